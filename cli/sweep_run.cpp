@@ -15,6 +15,7 @@
 #include "interrupt.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/writer.hpp"
 #include "progress.hpp"
@@ -91,14 +92,16 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
 
 // Tells the columns of --takes that say nothing about a scene.
 void note_columns(const Takes& takes, const SweepRunOptions& options) {
-  constexpr std::size_t most_told = 12;
+  constexpr std::size_t most_told = 12, longest_name = 60;
   const std::span<const std::string> names = takes.columns_left_out();
   if (names.empty()) return;
+  std::vector<std::string> told;
+  for (const std::string& name : names.first(std::min(names.size(), most_told)))
+    told.push_back(shortened(printable(name), longest_name));
   print(stderr,
         fmt::format("{}: note: {} left out, whose heads are not of the form NAME.ATTRIBUTE: {}{}\n",
                     printable(*options.takes), counted(names.size(), "column"),
-                    fmt::join(names.first(std::min(names.size(), most_told)), ", "),
-                    names.size() > most_told ? ", …" : ""));
+                    fmt::join(told, ", "), names.size() > most_told ? ", …" : ""));
 }
 
 int print_plan(const SweepRequest& request, const SweepRunOptions& options) {

@@ -38,10 +38,12 @@ tl::unexpected<Error> refuse_output(std::string_view option, const std::string& 
 Result<void> check_view_output(std::string_view option, const std::string& file,
                                const SweepFolder& folder) {
   if (auto no_part = check_no_part(option, file, folder); !no_part) return no_part;
-  return folder.sweep().for_each_variant([&](const Scene& scene) -> Result<void> {
-    const std::string input = input_named(file, scene);
-    return input.empty() ? Result<void>() : refuse_output(option, file, input);
-  });
+  return folder.sweep().for_each_variant(
+      [&](const Scene& scene) -> Result<void> {
+        const std::string input = input_named(file, scene);
+        return input.empty() ? Result<void>() : refuse_output(option, file, input);
+      },
+      &was_interrupted);
 }
 
 Result<void> check_view_places(const SweepViewOptions& options) {

@@ -13,7 +13,8 @@ WaitingBar::WaitingBar(const std::string& folder, std::vector<bool> takes, std::
                        bool is_quiet)
     : progress_(static_cast<int>(count), is_quiet, "takes") {
   if (count == 0 || !progress_.is_shown()) return;
-  if (auto watch = SweepWatch::begin(folder, std::move(takes))) watch_.emplace(*std::move(watch));
+  if (auto watch = SweepWatch::begin(folder, std::move(takes), &was_interrupted))
+    watch_.emplace(*std::move(watch));
 }
 
 void WaitingBar::look(bool is_running) {

@@ -43,13 +43,14 @@ class Texts {
 // rows only, if it is stopped.
 std::vector<Texts> texts_of(const SweepFolder& folder, const SweepStatus& status,
                             const std::vector<std::size_t>& rows, const StopRequest& should_stop) {
-  constexpr std::size_t rows_between_stops = 4096;
+  constexpr std::size_t parts_of_text = 32;
   const Takes& takes = folder.sweep().takes();
   const std::vector<std::string>& scenes = folder.request().scenes;
   const std::size_t first = scenes.size() > 1 ? 1 : 0;
   std::vector<Texts> columns(first + takes.paths().size() + 1);
+  StopPoll stop(should_stop);
   for (std::size_t row = 0; row < rows.size(); ++row) {
-    if (row % rows_between_stops == 0 && pliant::is_stopped(should_stop)) break;
+    if (stop.after(parts_of_text * columns.size())) break;
     const std::size_t take = rows[row];
     if (first > 0) columns.front().add(scenes[takes.scene_of(take)]);
     const auto texts = takes.texts(take);

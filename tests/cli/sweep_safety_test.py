@@ -69,7 +69,7 @@ class SweepSafety(SweepCommand):
     def test_what_no_sweep_has_is_refused_in_little_memory(self):
         self.make("s", "--make-only")
         text = self.read("s/sweep.json").decode()
-        for old, new, part in (('"version"', '"more": ' + "[" * 1_000_000, "nested too deeply"),
+        for old, new, part in (('"version"', '"more": ' + "[" * 1_000_000, "nested more than 200 deep"),
                                ('"axes": [', '"axes": [1,', "is not the file of a sweep"),
                                ('"texts": [', '"texts": [1,', "a member is missing, or has a value of another kind"),
                                ('"engine"', '"motor"', "a member is missing, or has a value of another kind"),
@@ -82,6 +82,43 @@ class SweepSafety(SweepCommand):
                 errors = self.sweep("status", self.path("s"), code=2).stderr
                 self.assertEqual(errors.count("\n"), 1)
                 self.assertIn(part, errors)
+
+    def test_a_table_that_is_another_file_is_not_quoted(self):
+        scene = self.write("scene.xml", edited())
+        for text in ("secret\n1\n", "secret.txt\nsecret\n", "# secret.conf\nsecret=secret.x\n",
+                     "secret.a,secret.b\n1,secret\n", "a.secret*,\"secret\n", "sheet.secret\n1\n",
+                     "secret.x,secret.x\nsecret,2\n", "\x1b[31msecret.a\n1\n"):
+            with self.subTest(text=text):
+                table = self.write("table.csv", text)
+                errors = self.sweep("run", scene, "-o", self.path("s"), "--takes", table, code=2).stderr
+                self.assertEqual(errors.count("\n"), 1, errors)
+                self.assertIn(f"--takes {table}", errors)
+                self.assertNotIn("secret", errors)
+        # One that has a path of the scene is a table, whose mistakes are told.
+        for text, part in (("sheet.density,sheet.dampng\n1,2\n", 'did you mean "damping"'),
+                           ("sheet.density\n1\nmany\n", 'line 3: sheet.density=many: "many"'),
+                           ("sheet.density\n" + "9" * 1_000_000 + "\n", "line 2: sheet.density=999")):
+            with self.subTest(text=text[:40]):
+                table = self.write("table.csv", text)
+                errors = self.sweep("run", scene, "-o", self.path("s"), "--takes", table, code=2).stderr
+                self.assertEqual(errors.count("\n"), 1, errors[:1000])
+                self.assertIn(part, errors)
+                self.assertLess(len(errors), 2000)
+
+    def test_a_log_of_any_size_ends_soon_in_little_memory(self):
+        self.make("s")
+        for name, head in (("s/log/a.jsonl", b""), ("s/log/b.jsonl", b"{}\n{}\n")):
+            with self.subTest(name=name):
+                with open(self.path(name), "wb") as file:
+                    file.write(head)
+                os.truncate(self.path(name), 1 << 40)  # needs no disk
+                for command in ("status", "run", "verify"):
+                    done = subprocess.run(["sh", "-c", 'ulimit -v 4000000; exec "$@"', "sh", PLIANT, "sweep", command,
+                                           self.path("s")], capture_output=True, text=True, check=False, timeout=100)
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+                    self.assertIn(f"{name}:{head.count(10) + 1}: error: this line has NUL bytes", done.stderr)
+                os.remove(self.path(name))
 
     def test_names_that_are_not_utf8_are_refused_ahead_of_all_work(self):
         scene = self.write("scene.xml", edited()).encode()

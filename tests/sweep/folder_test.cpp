@@ -137,6 +137,30 @@ TEST_CASE("what is no whole line counts for nothing", "[sweep]") {
   CHECK(folder.status()->is_complete());
 }
 
+TEST_CASE("a file that is no log is told by its line, however large it is", "[sweep]") {
+  const Place place;
+  const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
+  REQUIRE(folder.run({.part = {0, 2}}));
+  const auto file = place.folder().file("sweep/log/other.jsonl");
+  for (const std::string text : {"{}\n", ""}) {
+    place.folder().write("sweep/log/other.jsonl", text);
+    fs::resize_file(file, std::uintmax_t{1} << 40U);
+    std::size_t calls = 0;
+    const auto status = folder.status([&] { return ++calls, false; });
+    REQUIRE_FALSE(status);
+    CHECK(status.error().code == ErrorCode::InvalidInput);
+    CHECK(status.error().file == file.string());
+    CHECK(status.error().line == (text.empty() ? 1 : 2));
+    CHECK_THAT(status.error().message, contains_text("the file is no log of a sweep"));
+    CHECK(calls < 20);
+  }
+  // Zeros that a power cut leaves at the end are no whole line.
+  place.folder().write("sweep/log/other.jsonl", "{}\n" + std::string(4096, '\0'));
+  CHECK(folder.status()->done == 3);
+  place.folder().write("sweep/log/other.jsonl", std::string(1'000'000, '[') + "\n");
+  CHECK(folder.status()->done == 3);
+}
+
 TEST_CASE("reading the log ends when asked", "[sweep]") {
   const Place place;
   const auto folder = SweepFolder::make(place.sweep(), place.request()).value();
@@ -282,6 +306,39 @@ TEST_CASE("a folder that is no sweep stays as it is", "[sweep]") {
   fs::remove(place.folder().file("sweep/mine.txt"));
   place.folder().write("sweep/.sweep.json.1-0.part", "half");
   CHECK(SweepFolder::make(place.sweep(), place.request()));
+}
+
+TEST_CASE("a sweep.json that no sweep writes is refused in one line", "[sweep]") {
+  const Place place;
+  REQUIRE(SweepFolder::make(place.sweep(), place.request()));
+  const std::string text = read_file(place.sweep() + "/sweep.json").value();
+  const std::string deep(2'000'000, '['), closed(2'000'000, ']');
+  struct Case {
+    std::string from, to, part;
+  };
+  for (const Case& one : std::vector<Case>{
+           {"\"version\"", "\"x\": " + deep + closed + ", \"version\"", "nested more than"},
+           {"\"version\"", "\"version\": \"secret\", \"version\"", "two members of one name"},
+           {"\"version\"", "\"x\": 1e999, \"version\"", "too large"},
+           {"\"version\"", "\"x\": \"\xff\", \"version\"", "not valid JSON"},
+           {"\"version\"", std::string("\"x\": \0, \"version\"", 18), "NUL"},
+           {"\"count\": 3", "\"count\": -3", "axes[0].count"},
+           {"\"count\": 3", "\"count\": 18446744073709551615", "do not belong together"},
+           {"\"frames\":null", "\"frames\":[1, 99999999999]", "arguments.frames"},
+           {"\"write\":\"\"", "\"write\":\"/../secret\"", "arguments.write"},
+           {"\"sample\":null", "\"sample\":-1", "arguments.sample"},
+           {"\"paths\": [0]", "\"paths\": [0.5]", "axes[0].paths"}}) {
+    CAPTURE(one.to.substr(0, 60));
+    std::string other = text;
+    REQUIRE(other.find(one.from) != std::string::npos);
+    other.replace(other.find(one.from), one.from.size(), one.to);
+    place.folder().write("sweep/sweep.json", other);
+    const auto opened = SweepFolder::open(place.sweep());
+    REQUIRE_FALSE(opened);
+    CHECK(opened.error().code == ErrorCode::InvalidInput);
+    CHECK_THAT(opened.error().message, contains_text(one.part));
+    CHECK(opened.error().message.find("secret") == std::string::npos);
+  }
 }
 
 TEST_CASE("a damaged sweep.json is refused", "[sweep]") {

@@ -88,6 +88,31 @@ TEST_CASE("blanks round heads and a separator behind the last one are no matter"
   CHECK(takes.columns_left_out() == std::vector<std::string>{"take"});
 }
 
+TEST_CASE("too many takes are refused ahead of making them", "[sweep][takes]") {
+  std::vector<std::string> vary;
+  for (int k = 0; k < 50; ++k) vary.push_back("a.x" + std::to_string(k) + "=1:2:1000000");
+  std::size_t calls = 0;
+  const auto takes = Takes::make({.vary = vary}, [&] { return ++calls, false; });
+  REQUIRE_FALSE(takes);
+  CHECK_THAT(takes.error().message, contains_text("at most 1000000 are allowed"));
+  constexpr std::size_t values_between = 256;
+  CHECK(calls < 3 * 1'000'000 / values_between);
+}
+
+TEST_CASE("a table that may be any file is not quoted", "[sweep][takes]") {
+  for (const std::string table :
+       {"secret\n1\n", "secret.x,secret.x\n1,2\n", "secret.a.b,secret.a.b\n1,2\n",
+        "secret.a.,\n1,2\n", "\"secret\nsecret", "\"secret\"secret,a.b\n", "secret.x\n1,secret\n",
+        "secret\nsecret\n", "sep=;secret\nsecret;secret\n"}) {
+    CAPTURE(table);
+    const std::string complaint = takes_complaint({.table = table, .table_name = "my.csv"});
+    CHECK_THAT(complaint, StartsWith("--takes my.csv"));
+    CHECK(complaint.find("secret") == std::string::npos);
+  }
+  CHECK_THAT(takes_complaint({.set = {"secret.x=1"}, .table = "secret.x\n1\n"}),
+             contains_text("column 1: --set secret.x=1 sets the same value"));
+}
+
 TEST_CASE("takes come back from their parts", "[sweep][takes]") {
   const Takes takes = Takes::make({.vary = {"a.x=1,2", "b.y=0:10"}, .samples = 5}).value();
   const Takes again = Takes::of(takes.parts()).value();

@@ -15,7 +15,9 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/open_file.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/scene/change_texts.hpp"
+#include "pliant/scene/changed_values.hpp"
 #include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/description.hpp"
@@ -125,9 +127,35 @@ class Adjust {
   const SceneChange& change_;
 };
 
+// Attributes that count as given from now on, not yet among those of the scene.
+class NewLines {
+ public:
+  explicit NewLines(Scene& scene) : scene_(scene) {}
+
+  void add(const std::string& name, const std::string& attribute) {
+    if (scene_.origin.gives(name, attribute)) return;
+    added_.push_back({name + '.' + attribute, std::max(1, scene_.origin.line_of(name))});
+  }
+
+  void put() {
+    if (added_.empty()) return;
+    std::vector<SceneLine>& lines = scene_.origin.lines;
+    const auto end = static_cast<std::ptrdiff_t>(lines.size());
+    std::ranges::sort(added_, {}, &SceneLine::part);
+    lines.insert(lines.end(), added_.begin(), added_.end());
+    std::ranges::inplace_merge(lines, lines.begin() + end, {}, &SceneLine::part);
+    added_.clear();
+  }
+
+ private:
+  Scene& scene_;
+  std::vector<SceneLine> added_;
+};
+
 // What a file would do beside the value itself.
-Result<void> settle(Scene& scene, const ValuePath& path, const Slot& slot,
-                    const std::string& root) {
+Result<void> settle(const NamedThings& things, const ValuePath& path, const Slot& slot,
+                    const std::string& root, NewLines& lines) {
+  const Scene& scene = things.scene();
   if (slot.attribute.syntax == Syntax::Path) {
     auto& file = *std::get<std::string*>(slot.place);
     const fs::path folder = fs::path(scene.origin.file).parent_path();
@@ -137,29 +165,21 @@ Result<void> settle(Scene& scene, const ValuePath& path, const Slot& slot,
     }
   }
   if (slot.attribute.name == "falloff") {
-    for (Force& force : scene.forces)
-      if (force.name == path.name) force.falloff_curve.reset();
+    if (Force* const force = things.force(path.name)) force->falloff_curve.reset();
   }
-  // From now on the attribute counts as given.
-  const std::string name = path.name == Description<Scene>::element ? "" : path.name;
-  if (scene.origin.gives(name, path.attribute)) return {};
-  const SceneLine line{name + '.' + path.attribute, std::max(1, scene.origin.line_of(name))};
-  std::vector<SceneLine>& lines = scene.origin.lines;
-  lines.insert(
-      std::lower_bound(lines.begin(), lines.end(), line,
-                       [](const SceneLine& a, const SceneLine& b) { return a.part < b.part; }),
-      line);
+  lines.add(path.name == Description<Scene>::element ? "" : path.name, path.attribute);
   return {};
 }
 
-Result<void> make_change(Scene& scene, const SceneChange& change, const std::string& root) {
-  const auto at = slot_at(scene, change.path);
+Result<void> make_change(const NamedThings& things, const SceneChange& change,
+                         const std::string& root, NewLines& lines) {
+  const auto at = slot_at(things, change.path);
   if (!at) return refuse(at.error());
   const Adjust adjust(at->path, change);
   if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
     return std::visit(adjust, at->slot.place);
   if (auto read = adjust.read(at->slot); !read) return read;
-  return settle(scene, at->path, at->slot, root);
+  return settle(things, at->path, at->slot, root, lines);
 }
 
 // Adjusts a copy of the channel.
@@ -191,23 +211,34 @@ std::vector<Error> problems_of(const Scene& scene) {
 // there are some.
 Error blamed(std::vector<Error> problems, const Scene& scene, std::span<const SceneChange> changes,
              const std::string& root) {
-  std::size_t count = changes.size();
-  for (; count > 1; --count) {
+  // So many changes bring problems, and so few bring none; looked for backwards, one by one, then
+  // in growing steps, and at last between two of these.
+  constexpr int most_single_steps = 32;
+  int round = 0;
+  std::size_t with = changes.size(), without = 0;
+  for (std::size_t step = 1; with - without > 1;) {
+    const std::size_t count =
+        without > 0 ? without + (with - without) / 2 : with - std::min(step, with - 1);
+    if (++round > most_single_steps) step *= 2;
     Scene before = scene;
-    if (!make_changes(before, changes.first(count - 1), root)) break;
-    std::vector<Error> others = problems_of(before);
-    if (others.empty()) break;
-    problems = std::move(others);
+    std::vector<Error> others;
+    if (make_changes(before, changes.first(count), root)) others = problems_of(before);
+    if (others.empty()) {
+      without = count;
+    } else {
+      with = count;
+      problems = std::move(others);
+    }
   }
   for (Error& problem : problems)
     problem = {.code = problem.code,
-               .message = fmt::format("--set {}: {}", changes[count - 1].typed(), problem.message)};
+               .message = fmt::format("--set {}: {}", changes[with - 1].told(), problem.message)};
   return as_one(std::move(problems), "");
 }
 
 // The name of a file that a path leads to; null: it leads to another value.
-const std::string* file_at(Scene& scene, const std::string& path) {
-  const auto at = slot_at(scene, path);
+const std::string* file_at(const NamedThings& things, const std::string& path) {
+  const auto at = slot_at(things, path);
   if (!at || at->slot.attribute.syntax != Syntax::Path) return nullptr;
   return std::get<std::string*>(at->slot.place);
 }
@@ -244,6 +275,11 @@ void for_each_member(const Group& group, const LookAt& look_at) {
 }
 
 }  // namespace
+
+std::string SceneChange::told() const {
+  constexpr std::size_t longest = 400;
+  return shortened(typed(), longest);
+}
 
 std::string SceneChange::typed() const {
   const std::string_view sign = kind == Kind::Times ? "*=" : kind == Kind::Plus ? "+=" : "=";
@@ -283,21 +319,19 @@ Result<SceneChange> parse_change(std::string_view typed) {
 Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root) {
   Scene changed = scene;
-  std::map<std::string, std::vector<const SceneChange*>> before;  // by the value that they change
+  const NamedThings things(changed);
+  NewLines lines(changed);
+  ChangedValues values;
   for (const SceneChange& change : changes) {
     const auto complain = [&](const std::string& message) {
-      return refuse(fmt::format("{}: {}", change.typed(), message));
+      return refuse(fmt::format("{}: {}", change.told(), message));
     };
-    const std::optional<ValuePath> parts = split_path(change.path);
-    auto& others = before[parts ? parts->name + '.' + parts->attribute : change.path];
-    for (const SceneChange* other : others) {
-      if (change.overlaps(*other) || other->overlaps(change))
-        return complain(fmt::format("{} changes the same value", other->typed()));
-    }
-    others.push_back(&change);
-    if (const auto made = make_change(changed, change, root); !made)
+    if (const auto other = values.add(change))
+      return complain(fmt::format("{} changes the same value", changes[*other].told()));
+    if (const auto made = make_change(things, change, root, lines); !made)
       return complain(made.error().message);
   }
+  lines.put();
   scene = std::move(changed);
   return {};
 }
@@ -333,52 +367,65 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
 
 Result<void> check_files(const Scene& changed, std::span<const SceneChange> changes) {
   Scene scene = changed;  // a table gives access to what it lists
+  const NamedThings things(scene);
   for (const SceneChange& change : changes) {
-    const std::string* const file = file_at(scene, change.path);
+    const std::string* const file = file_at(things, change.path);
     if (!file || file->empty()) continue;
     if (const auto readable = OpenFile::open(*file, scene.origin.root); !readable)
-      return refuse(fmt::format("{}: {}", change.typed(), readable.error().message));
+      return refuse(fmt::format("{}: {}", change.told(), readable.error().message));
   }
   return {};
 }
 
-Result<void> check_change_texts(const Scene& scene, const SceneChange& change,
-                                std::span<const std::string_view> texts, const std::string& root,
-                                const StopRequest& should_stop) {
-  SceneChange one = change;
-  const auto check_fully = [&](std::string_view text) {
-    Scene changed = scene;
-    one.text = text;
-    if (auto made = make_changes(changed, std::span(&one, 1), root); !made) return made;
-    return check_files(changed, std::span(&one, 1));
-  };
+std::optional<WrongText> check_change_texts(const Scene& scene, const SceneChange& change,
+                                            std::span<const std::string_view> texts,
+                                            const std::string& root,
+                                            const StopRequest& should_stop) {
   if (texts.empty()) return {};
-  if (auto made = check_fully(texts.front()); !made) return made;
-  // The path is right, so that only the texts can be wrong.
+  SceneChange one = change;
+  one.text = texts.front();
   Scene changed = scene;
-  const auto at = slot_at(changed, change.path);
+  if (auto made = make_changes(changed, std::span(&one, 1), root); !made)
+    return WrongText{0, made.error()};
+  // The path is right, so that only the texts can be wrong.
+  changed = scene;
+  const NamedThings things(changed);
+  NewLines lines(changed);
+  const auto at = slot_at(things, change.path);
   PLIANT_EXPECTS(at.has_value());
   const bool is_file = at->slot.attribute.syntax == Syntax::Path;
   const bool is_whole = change.kind == SceneChange::Kind::Set && at->path.part.empty();
   const Adjust adjust(at->path, one);
-  for (std::size_t k = 1; k < texts.size(); ++k) {
-    if (is_stopped(should_stop, k))
-      return fail(ErrorCode::Interrupted, "interrupted before the first take");
-    if (is_file) {
-      if (auto made = check_fully(texts[k]); !made) return made;
-      continue;
+  const auto check = [&]() -> Result<void> {
+    if (!is_whole) return std::visit(AdjustCopy(adjust), at->slot.place);
+    if (auto read = adjust.read(at->slot); !read || !is_file) return read;
+    if (auto settled = settle(things, at->path, at->slot, root, lines); !settled) return settled;
+    lines.put();
+    const std::string& file = *std::get<std::string*>(at->slot.place);
+    return file.empty() ? Result<void>() : check_readable(file);
+  };
+  for (std::size_t k = 0; k < texts.size(); ++k) {
+    if (is_stopped(should_stop, is_file ? 0 : k)) {
+      return WrongText{k,
+                       fail(ErrorCode::Interrupted, "interrupted before the first take").value()};
     }
     one.text = texts[k];
-    const Result<void> read =
-        is_whole ? adjust.read(at->slot) : std::visit(AdjustCopy(adjust), at->slot.place);
-    if (!read) return refuse(fmt::format("{}: {}", one.typed(), read.error().message));
+    if (auto read = check(); !read)
+      return WrongText{k, refuse(fmt::format("{}: {}", one.told(), read.error().message)).value()};
   }
   return {};
 }
 
+bool has_some_value(const Scene& scene, std::span<const std::string> paths) {
+  Scene changed = scene;  // a table gives access to what it lists
+  const NamedThings things(changed);
+  return std::ranges::any_of(paths,
+                             [&](const std::string& path) { return has_slot(things, path); });
+}
+
 bool names_file(const Scene& scene, const std::string& path) {
   Scene changed = scene;  // a table gives access to what it lists
-  return file_at(changed, path) != nullptr;
+  return file_at(NamedThings(changed), path) != nullptr;
 }
 
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {

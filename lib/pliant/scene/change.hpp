@@ -25,6 +25,7 @@ struct SceneChange {
   std::string text = {};  ///< as the attribute takes it in a file
 
   std::string typed() const;  ///< `poke.magnitude*=2`
+  std::string told() const;   ///< the beginning of that, for messages
 
   /// Whether another path is of the same value, or of a part of it.
   bool overlaps(const SceneChange& other) const;
@@ -51,6 +52,9 @@ Result<void> change_scene(Scene& scene, std::span<const std::string> typed,
 /// The same without the checks of the changed scene: of each value only the range.
 Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root = {});
+
+/// Whether the scene has a value of one of these paths.
+bool has_some_value(const Scene& scene, std::span<const std::string> paths);
 
 /// Whether the path is that of an attribute which names a file.
 bool names_file(const Scene& scene, const std::string& path);

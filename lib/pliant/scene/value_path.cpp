@@ -55,14 +55,11 @@ Table all_slots(Force& force) {
   return table;
 }
 
-Table all_slots(Scene& scene, std::string_view name) {
-  for (Surface& surface : scene.surfaces)
-    if (surface.name == name) return all_slots(surface);
-  for (Force& force : scene.forces)
-    if (force.name == name) return all_slots(force);
-  for (Group& group : scene.groups)
-    if (group.name == name) return table_of(group);
-  return name == Description<Scene>::element ? table_of(scene) : Table();
+Table all_slots(const NamedThings& things, const std::string& name) {
+  if (Surface* const surface = things.surface(name)) return all_slots(*surface);
+  if (Force* const force = things.force(name)) return all_slots(*force);
+  if (Group* const group = things.group(name)) return table_of(*group);
+  return name == Description<Scene>::element ? table_of(things.scene()) : Table();
 }
 
 std::string no_object(const Scene& scene, std::string_view name) {
@@ -76,6 +73,17 @@ std::string no_object(const Scene& scene, std::string_view name) {
 bool may_change(const Slot& slot) {
   return slot.attribute.syntax != Syntax::Version && slot.attribute.name != "name" &&
          slot.attribute.need != Need::Later;
+}
+
+Table::iterator find_slot(Table& table, const std::string& attribute) {
+  return std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
+    return slot.attribute.name == attribute && may_change(slot);
+  });
+}
+
+bool is_part(const std::string& part) {
+  return part.empty() ||
+         std::find(std::begin(part_words), std::end(part_words), part) != std::end(part_words);
 }
 
 std::string no_attribute(const Scene& scene, const Table& table, const ValuePath& path) {
@@ -106,19 +114,35 @@ std::optional<ValuePath> split_path(std::string_view path) {
   return parts;
 }
 
+NamedThings::NamedThings(Scene& scene) : scene_(scene) {
+  // Of several of one name the first.
+  for (Surface& surface : scene.surfaces) surfaces_.try_emplace(surface.name, &surface);
+  for (Force& force : scene.forces) forces_.try_emplace(force.name, &force);
+  for (Group& group : scene.groups) groups_.try_emplace(group.name, &group);
+}
+
+bool has_slot(const NamedThings& things, std::string_view path) {
+  const std::optional<ValuePath> parts = split_path(path);
+  if (!parts || !is_part(parts->part)) return false;
+  Table table = all_slots(things, parts->name);
+  return find_slot(table, parts->attribute) != table.end();
+}
+
 Reading<SlotAt> slot_at(Scene& scene, std::string_view path) {
+  return slot_at(NamedThings(scene), path);
+}
+
+Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path) {
+  Scene& scene = things.scene();
   std::optional<ValuePath> parts = split_path(path);
   if (!parts)
     return tl::unexpected(fmt::format(
         "{} is no path of an attribute; write NAME.ATTRIBUTE or scene.ATTRIBUTE", in_quotes(path)));
-  Table table = all_slots(scene, parts->name);
+  Table table = all_slots(things, parts->name);
   if (table.empty()) return tl::unexpected(no_object(scene, parts->name));
-  const auto found = std::find_if(table.begin(), table.end(), [&](const Slot& slot) {
-    return slot.attribute.name == parts->attribute && may_change(slot);
-  });
+  const auto found = find_slot(table, parts->attribute);
   if (found == table.end()) return tl::unexpected(no_attribute(scene, table, *parts));
-  if (!parts->part.empty() &&
-      std::find(std::begin(part_words), std::end(part_words), parts->part) == std::end(part_words))
+  if (!is_part(parts->part))
     return tl::unexpected(fmt::format("{} has no part {}{}", parts->title(), in_quotes(parts->part),
                                       hint(parts->part, part_words)));
   return SlotAt{*std::move(parts), std::move(*found)};

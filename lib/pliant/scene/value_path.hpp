@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 #include "pliant/scene/scene.hpp"
 #include "pliant/scene/slot.hpp"
@@ -35,8 +36,40 @@ struct SlotAt {
   Slot slot;
 };
 
-/// The slot that a path leads to, into `scene`. Complaints: the text is no path, or nothing has
+/// Finds the things of a scene, which must outlive it and keep them, by their names, for many paths
+/// of one scene.
+class NamedThings {
+ public:
+  explicit NamedThings(Scene& scene);
+
+  Scene& scene() const { return scene_; }
+
+  /// Null: there is no such thing.
+  Surface* surface(const std::string& name) const { return found(surfaces_, name); }
+  Force* force(const std::string& name) const { return found(forces_, name); }
+  Group* group(const std::string& name) const { return found(groups_, name); }
+
+ private:
+  template <class Thing>
+  using ByName = std::unordered_map<std::string_view, Thing*>;
+  template <class Thing>
+  static Thing* found(const ByName<Thing>& things, const std::string& name) {
+    const auto thing = things.find(name);
+    return thing == things.end() ? nullptr : thing->second;
+  }
+
+  Scene& scene_;
+  ByName<Surface> surfaces_;
+  ByName<Force> forces_;
+  ByName<Group> groups_;
+};
+
+/// The slot that a path leads to, into the scene. Complaints: the text is no path, or nothing has
 /// that name, attribute or part, with the nearest that there is.
+Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path);
 Reading<SlotAt> slot_at(Scene& scene, std::string_view path);
+
+/// Whether a path leads to a slot.
+bool has_slot(const NamedThings& things, std::string_view path);
 
 }  // namespace pliant::xml

@@ -1,10 +1,12 @@
 #include "pliant/sweep/csv.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "pliant/core/stop_request.hpp"
+#include "pliant/sweep/takes.hpp"
 
 namespace pliant {
 
@@ -21,10 +23,11 @@ std::string csv_field(std::string_view text) {
 namespace {
 
 // A comma, unless the first row with any character has a semicolon or a tabulator, and no comma.
-char separator_of(std::string_view text) {
+char separator_of(std::string_view text, StopPoll& stop) {
   bool is_quoted = false, is_empty = true;
   char found = 0;
   for (const char c : text) {
+    if (stop.after()) break;
     if (c == '"') is_quoted = !is_quoted;
     if (is_quoted) continue;
     if (c == '\n' && !is_empty) break;
@@ -39,10 +42,14 @@ char separator_of(std::string_view text) {
 
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows,
                                       const StopRequest& should_stop) {
-  constexpr std::size_t bytes_between_stops = std::size_t{1} << 18U;
-  std::size_t next_stop = 0;
+  if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+    const std::string_view before = text.substr(0, nul);
+    return invalid("has a NUL byte, which no table has",
+                   static_cast<int>(1 + std::count(before.begin(), before.end(), '\n')));
+  }
+  StopPoll stop(should_stop);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  char separator = separator_of(text);
+  char separator = separator_of(text, stop);
   int line = 1;
   if (constexpr std::string_view told = "sep="; text.starts_with(told) && text.size() > 5) {
     separator = text[told.size()];  // a spreadsheet says it in a line of its own
@@ -50,7 +57,7 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_ro
     ++line;
   }
   std::vector<CsvRow> rows;
-  std::size_t count = 0;
+  std::size_t count = 0, field_count = 0;
   CsvRow row{.line = line};
   std::string field;
   bool is_empty = true;  // the row
@@ -61,15 +68,13 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_ro
     is_empty = true;
   };
   for (std::size_t at = 0; at < text.size();) {
-    if (at >= next_stop) {
-      if (is_stopped(should_stop)) return interrupted();
-      next_stop = at + bytes_between_stops;
-    }
+    if (stop.after()) return interrupted();
     const char c = text[at];
     if (c == '"' && field.empty()) {
       const int begin = line;
       is_empty = false;
       for (++at;; ++at) {
+        if (stop.after()) return interrupted();
         if (at == text.size()) return invalid("a quote is not closed", begin);
         if (text[at] == '\n') ++line;
         if (text[at] != '"') {
@@ -95,6 +100,8 @@ Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_ro
       row.fields.push_back(std::exchange(field, {}));
       if (row.fields.size() >= most_csv_fields)
         return invalid(fmt::format("has more than {} values", most_csv_fields), row.line);
+      if (++field_count > most_take_texts)
+        return invalid(fmt::format("the table has more than {} values", most_take_texts), row.line);
     } else if (c == '\n') {
       ++line;
       end_row();

@@ -26,9 +26,9 @@ struct CsvRow {
 /// The rows of a table, whose values are separated by commas, or, as its first row tells, by
 /// semicolons or tabulators, as spreadsheets of some languages write; with line ends of either
 /// kind, perhaps behind a byte order mark; rows without any character are left out. Errors:
-/// InvalidInput with the line: a quote that is not closed, or followed by something else than a
-/// separator or the line's end; more than `most_csv_fields` fields in a row; with the number, more
-/// than `most_rows` rows, which are not kept. Interrupted.
+/// InvalidInput with the line: a NUL byte; a quote that is not closed, or followed by something
+/// else than a separator or the line's end; more than `most_csv_fields` fields in a row; with the
+/// number, more than `most_rows` rows, which are not kept. Interrupted.
 Result<std::vector<CsvRow>> parse_csv(std::string_view text, std::size_t most_rows,
                                       const StopRequest& should_stop = {});
 

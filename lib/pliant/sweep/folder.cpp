@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/output/atomic_file.hpp"
@@ -26,6 +27,11 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path file_of_sweep(const fs::path& folder) { return folder / "sweep.json"; }
+
+std::string short_text(const std::string& text) {
+  constexpr std::size_t longest = 100;
+  return shortened(printable(text), longest);
+}
 
 // What AtomicFile leaves if it is killed.
 bool is_half_file(const fs::path& file) {
@@ -49,7 +55,20 @@ Result<void> check_is_utf8(std::string_view what, const std::string& text) {
       fmt::format("{} {}: is not UTF-8, as all that a sweep keeps must be", what, printable(text)));
 }
 
-Result<void> check_is_utf8(const SweepRequest& request) {
+// In pieces that end between two characters.
+Result<bool> is_utf8_all(std::string_view text, const StopRequest& should_stop) {
+  constexpr std::size_t piece = std::size_t{1} << 20U;
+  while (!text.empty()) {
+    if (is_stopped(should_stop)) return interrupted();
+    std::size_t end = std::min(text.size(), piece);
+    for (int n = 0; n < 3 && end < text.size() && (text[end] & '\xc0') == '\x80'; ++n) ++end;
+    if (!is_utf8(text.substr(0, end))) return false;
+    text.remove_prefix(end);
+  }
+  return true;
+}
+
+Result<void> check_is_utf8(const SweepRequest& request, const StopRequest& should_stop) {
   struct Texts {
     std::string_view what;
     const std::vector<std::string>& texts;
@@ -60,7 +79,10 @@ Result<void> check_is_utf8(const SweepRequest& request) {
     for (const std::string& text : texts)
       if (auto is = check_is_utf8(what, text); !is) return is;
   }
-  if (variation.table && !is_utf8(*variation.table))
+  const auto is_text =
+      is_utf8_all(variation.table ? *variation.table : std::string_view(), should_stop);
+  if (!is_text) return fail(is_text.error());
+  if (!*is_text)
     return fail(ErrorCode::InvalidInput,
                 fmt::format("--takes {}: the table is not UTF-8; save it as UTF-8",
                             printable(variation.table_name)));
@@ -123,7 +145,7 @@ struct Asked {
 };
 
 Result<Asked> read_request(const SweepRequest& request, const StopRequest& should_stop) {
-  if (auto is = check_is_utf8(request); !is) return fail(is.error());
+  if (auto is = check_is_utf8(request, should_stop); !is) return fail(is.error());
   Asked asked;
   SweepFile& file = asked.file;
   file.version = PLIANT_VERSION;
@@ -327,16 +349,17 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
   if (!*is_new) return open_the_same();
   auto sweep = checked_sweep(*asked, should_stop);
   if (!sweep) return fail(sweep.error());
-  asked->file.takes = sweep->takes().parts();
   InputHashes inputs;
   const auto add_inputs = [&](const Scene& scene) { return inputs.add(scene, should_stop); };
-  if (auto added = sweep->for_each_variant(add_inputs); !added) return fail(added.error());
+  if (auto added = sweep->for_each_variant(add_inputs, should_stop); !added)
+    return fail(added.error());
   asked->file.inputs = inputs.all();
   if (auto is = check_is_utf8(asked->file); !is) return fail(is.error());
   NewFolder made(folder);
   if (made.error())
     return fail(ErrorCode::Unwritable, "cannot make the folder: " + made.error().message(), folder);
-  const auto written = write_sweep_file(asked->file, file_of_sweep(folder), should_stop);
+  const auto written =
+      write_sweep_file(asked->file, sweep->takes().parts(), file_of_sweep(folder), should_stop);
   if (!written) return fail(written.error());
   made.keep();
   if (!*written) return open_the_same();  // another process was quicker
@@ -357,7 +380,7 @@ Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopReque
     return fail(ErrorCode::InvalidInput,
                 fmt::format("{}: the sweep has engine {} of pliant {}, not {} of pliant {}, so "
                             "that takes would have other bits",
-                            printable(folder), printable(file->engine), printable(file->version),
+                            printable(folder), short_text(file->engine), short_text(file->version),
                             engine_name(), PLIANT_VERSION));
   std::vector<Scene> scenes;
   for (const SceneTexts& texts : file->texts) {
@@ -397,7 +420,7 @@ Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
       if (is_stopped(should_stop, names.size())) return interrupted();
     }
     for (std::size_t take = 0; take < status.takes.size(); ++take) {
-      if (is_stopped(should_stop, take)) return interrupted();
+      if (is_stopped(should_stop)) return interrupted();
       TakeRecord& record = status.takes[take];
       if (record.status == TakeStatus::Done && !parts_->has_files(take, names)) record = {};
     }

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 #include <ctime>
-#include <fstream>
+#include <limits>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -18,9 +18,10 @@
 #include <unistd.h>
 
 #include "pliant/core/hash.hpp"
-#include "pliant/core/read_file.hpp"
+#include "pliant/core/line_reader.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/core/text.hpp"
+#include "pliant/mesh/json_reader.hpp"
 #include "pliant/sweep/own_folder.hpp"
 
 namespace pliant {
@@ -29,7 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-// What a line of JSON costs to read is 100 times its length.
+// What a line of JSON costs to read is 100 times its length. Ours have less than 50 KiB.
 constexpr std::size_t longest_line = std::size_t{1} << 18U;
 
 std::string host_name() {
@@ -55,11 +56,19 @@ tl::unexpected<Error> cannot_write_log(const std::string& name, int error) {
               name);
 }
 
-Result<std::vector<fs::path>> files_of_log(const fs::path& folder) {
+// The error of reading a line, with what to do about a file that is none of ours.
+Error no_log(Error error) {
+  if (error.code == ErrorCode::InvalidInput)
+    error.message += ", so that the file is no log of a sweep; move it away";
+  return error;
+}
+
+Result<std::vector<fs::path>> files_of_log(const fs::path& folder, const StopRequest& should_stop) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
+    if (is_stopped(should_stop)) return interrupted();
     std::error_code unknown;
     if (entry->path().extension() == ".jsonl" && entry->is_regular_file(unknown))
       files.push_back(entry->path());
@@ -77,59 +86,51 @@ std::uintmax_t size_of(const fs::path& file) {
   return error ? 0 : size;
 }
 
-// Passes the bytes of a file from there on to `take`, in pieces, until it returns false.
-Result<void> read_from(const fs::path& file, std::uintmax_t begin,
-                       const std::function<bool(std::string_view)>& take) {
-  if (auto readable = check_readable(file); !readable) return readable;
-  std::ifstream stream(file, std::ios::binary);
-  stream.seekg(static_cast<std::streamoff>(begin));
-  std::string piece(std::size_t{1} << 20U, '\0');
-  do {
-    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    const auto count = static_cast<std::size_t>(stream.gcount());
-    if (count > 0 && !take(std::string_view(piece).substr(0, count))) return {};
-  } while (stream);
-  if (!stream.eof()) return fail(ErrorCode::Unreadable, std::strerror(errno), file.string());
-  return {};
-}
+// Reads what a line has.
+class LineContent : private JsonReader {
+ public:
+  explicit LineContent(Json& root) : JsonReader(root) {}
 
-// Reads a member; false: it is missing or of another type.
+  // False: it has another form.
+  bool read(LogLine& line) {
+    line.take = required_whole(root_, "take");
+    const std::string status = required_text(root_, "status");
+    line.seconds = required_number(root_, "seconds");
+    line.host = required_text(root_, "host");
+    line.time = required_text(root_, "time");
+    line.is_done = status == "done";
+    if (line.is_done) {
+      line.measures = measures();
+    } else if (status == "failed") {
+      line.error = required_text(root_, "error");
+      line.full_error = text(root_, "fullError").value_or(line.error);
+    } else {
+      return false;
+    }
+    // Ours are no longer, and a host has no more than 255 bytes.
+    const bool is_ours = line.error.size() <= longest_error_text &&
+                         line.full_error.size() <= longest_error_text && line.host.size() <= 255 &&
+                         line.time.size() <= 64;
+    return is_ours && !fault_;
+  }
 
-bool read_member(const Json& json, const char* name, std::string& text) {
-  const auto found = json.find(name);
-  if (found == json.end() || !found->is_string()) return false;
-  text = found->get_ref<const std::string&>();
-  return true;
-}
+ private:
+  int frame(const char* key) {
+    using Limits = std::numeric_limits<int>;
+    return static_cast<int>(required_integer(root_, key, Limits::min(), Limits::max()));
+  }
 
-bool read_member(const Json& json, const char* name, double& number) {
-  const auto found = json.find(name);
-  if (found == json.end() || !found->is_number()) return false;
-  number = found->get<double>();
-  return true;
-}
-
-bool read_member(const Json& json, const char* name, int& number) {
-  const auto found = json.find(name);
-  if (found == json.end() || !found->is_number_integer()) return false;
-  const auto whole = found->get<std::int64_t>();
-  number = static_cast<int>(whole);
-  return number == whole;
-}
-
-bool read_measures(const Json& json, Measures& measures) {
-  std::string hash;
-  if (!read_member(json, "peak", measures.peak) ||
-      !read_member(json, "peakFrame", measures.peak_frame) ||
-      !read_member(json, "final", measures.final) || !read_member(json, "rms", measures.rms) ||
-      !read_member(json, "speed", measures.speed) ||
-      !read_member(json, "energy", measures.energy) ||
-      !read_member(json, "settle", measures.settle) || !read_member(json, "hash", hash))
-    return false;
-  const auto read = to_hash(hash);
-  if (read) measures.hash = *read;
-  return read.has_value();
-}
+  Measures measures() {
+    return {.peak = required_number(root_, "peak"),
+            .peak_frame = frame("peakFrame"),
+            .final = required_number(root_, "final"),
+            .rms = required_number(root_, "rms"),
+            .speed = required_number(root_, "speed"),
+            .energy = required_number(root_, "energy"),
+            .settle = frame("settle"),
+            .hash = required_hash(root_, "hash")};
+  }
+};
 
 }  // namespace
 
@@ -147,12 +148,7 @@ std::string error_text(const Error& error, Folders folders) {
   add(error);
   for (const Error& other : error.others)
     if (text.size() < longest_error_text) add(other);
-  text = printable(text);
-  if (text.size() <= longest_error_text) return text;
-  constexpr std::string_view rest = "…";
-  std::size_t end = longest_error_text - rest.size();
-  while (length_of_character(text.substr(end, 4)) == 0) --end;  // not within a character
-  return text.substr(0, end).append(rest);
+  return shortened(printable(text), longest_error_text);
 }
 
 std::string to_line(const TakeOutcome& outcome) {
@@ -174,20 +170,8 @@ std::string to_line(const TakeOutcome& outcome) {
 }
 
 bool read_line(std::string_view text, LogLine& line) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (!json.is_object()) return false;
-  const auto take = json.find("take");
-  if (take == json.end() || !take->is_number_unsigned()) return false;
-  line.take = take->get<std::size_t>();
-  std::string status;
-  if (!read_member(json, "status", status) || !read_member(json, "seconds", line.seconds) ||
-      !read_member(json, "host", line.host) || !read_member(json, "time", line.time))
-    return false;
-  line.is_done = status == "done";
-  if (line.is_done) return read_measures(json, line.measures);
-  if (status != "failed" || !read_member(json, "error", line.error)) return false;
-  if (!read_member(json, "fullError", line.full_error)) line.full_error = line.error;
-  return true;
+  auto json = parse_json(text, "a line of a log");
+  return json && json->is_object() && LineContent(*json).read(line);
 }
 
 LogFile::LogFile(LogFile&& other) noexcept
@@ -224,10 +208,11 @@ Result<void> LogFile::append(std::string_view line) {
   }
 }
 
-Result<void> LogReader::skip() {
-  const auto files = files_of_log(folder_);
+Result<void> LogReader::skip(const StopRequest& should_stop) {
+  const auto files = files_of_log(folder_, should_stop);
   if (!files) return fail(files.error());
   for (const fs::path& file : *files) {
+    if (is_stopped(should_stop)) return interrupted();
     const std::uintmax_t size = size_of(file);
     places_[file] = {size, size};
   }
@@ -236,43 +221,27 @@ Result<void> LogReader::skip() {
 
 Result<void> LogReader::read(const std::function<void(LogLine)>& take_line,
                              const StopRequest& should_stop) {
-  const auto files = files_of_log(folder_);
+  const auto files = files_of_log(folder_, should_stop);
   if (!files) return fail(files.error());
-  const auto take = [&](std::string_view text) {
-    LogLine line;
-    if (read_line(text, line)) take_line(std::move(line));
-  };
   for (const fs::path& file : *files) {
+    if (is_stopped(should_stop)) return interrupted();
     Place& place = places_[file];
     const std::uintmax_t size = size_of(file);
     if (size == place.size) continue;
     if (size < place.size) place = {};  // another file by now
-    std::string rest;                   // of a line that is not complete yet
-    std::uintmax_t position = place.next;
-    bool is_stopped = false;
-    auto read = read_from(file, position, [&](std::string_view piece) {
-      for (std::size_t end; (end = piece.find('\n')) != std::string_view::npos;
-           piece.remove_prefix(end + 1)) {
-        if (rest.empty()) {
-          take(piece.substr(0, end));
-        } else {
-          rest += piece.substr(0, end);
-          take(rest);
-          rest.clear();
-        }
-        position += end + 1;
-        place.next = position;
-      }
-      position += piece.size();
-      rest += piece;
-      // No line of ours; whatever follows on it is none either.
-      if (rest.size() > longest_line) rest = "?";
-      is_stopped = pliant::is_stopped(should_stop);
-      return !is_stopped;
-    });
-    if (!read) return read;
-    if (is_stopped) return interrupted();
-    place.size = position;
+    auto lines =
+        LineReader::open(file, longest_line, LineReader::LongLines::Skip, place.next, should_stop);
+    if (!lines) return fail(lines.error());
+    for (std::size_t count = 0;; ++count) {
+      if (is_stopped(should_stop, count)) return interrupted();
+      const auto line = lines->next(should_stop);
+      if (!line) return fail(no_log(line.error()));
+      place.size = lines->position() + (*line && !(*line)->is_whole ? (*line)->text.size() : 0);
+      if (!*line || !(*line)->is_whole) break;
+      LogLine read;
+      if (read_line((*line)->text, read)) take_line(std::move(read));
+      place.next = lines->position();
+    }
   }
   return {};
 }

@@ -70,12 +70,13 @@ class LogReader {
  public:
   explicit LogReader(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  /// Passes over all that is there. Errors: Unreadable.
-  Result<void> skip();
+  /// Passes over all that is there. Errors: Unreadable; Interrupted.
+  Result<void> skip(const StopRequest& should_stop = {});
 
   /// Calls `take_line` for each whole line of all files of the folder, which may be missing, that
-  /// was not read before. Costs a look at each file, and what was added. Errors: Unreadable;
-  /// Interrupted.
+  /// was not read before; a line that is none of a log is passed over. Costs a look at each file,
+  /// and what was added. Errors: Unreadable; InvalidInput, with file and line: a hole of
+  /// more than 256 KiB; Interrupted.
   Result<void> read(const std::function<void(LogLine)>& take_line,
                     const StopRequest& should_stop = {});
 

@@ -29,16 +29,19 @@ Error told_after(Error error, const std::string& begin) {
 // gets the result of changing it.
 template <class Visit>
 Result<void> visit_texts(const Scene& base, const Takes& takes, std::size_t path,
-                         const std::string& root, const Visit& visit) {
+                         const std::string& root, const Visit& visit,
+                         const StopRequest& should_stop) {
   const VariedPath& varied = takes.paths()[path];
   Scene scene = base;
-  for (const std::string_view text : takes.texts_of(path)) {
+  for (const std::string_view text : takes.texts_of(path, should_stop)) {
+    if (is_stopped(should_stop)) return interrupted();
     // A whole value takes the place of the last one.
     if (!is_whole(varied)) scene = base;
     const SceneChange change{varied.kind, varied.path, std::string(text)};
     auto made = make_changes(scene, std::span(&change, 1), root);
     if (auto done = visit(scene, made); !done) return done;
   }
+  if (is_stopped(should_stop)) return interrupted();
   return {};
 }
 
@@ -53,12 +56,23 @@ Result<Sweep> Sweep::make(std::vector<Scene> scenes, Takes takes, SweepSettings 
                           const StopRequest& should_stop) {
   Sweep sweep(std::move(scenes), std::move(takes), std::move(settings));
   if (auto checked = sweep.check_values(should_stop); !checked) return fail(checked.error());
-  if (auto checked = sweep.check_frames(); !checked) return fail(checked.error());
+  if (auto checked = sweep.check_frames(should_stop); !checked) return fail(checked.error());
   return sweep;
 }
 
 Sweep Sweep::unchecked(std::vector<Scene> scenes, Takes takes, SweepSettings settings) {
   return {std::move(scenes), std::move(takes), std::move(settings)};
+}
+
+// A message may quote a table only if some head of it is a path of the scene: otherwise it may be
+// any file.
+Result<void> Sweep::check_table(const Scene& scene) const {
+  if (takes_.table_title().empty()) return {};
+  std::vector<std::string> paths;
+  for (const VariedPath& path : takes_.paths()) paths.push_back(path.path);
+  if (has_some_value(scene, paths)) return {};
+  return invalid(takes_.table_title() +
+                 ": no column is headed by the path of a value of the scene, such as scene.end");
 }
 
 Result<void> Sweep::check_values(const StopRequest& should_stop) const {
@@ -68,32 +82,27 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
       return fail(told_after(made.error(), "--set "));
     if (auto there = check_files(base, takes_.set()); !there)
       return fail(told_after(there.error(), "--set "));
+    if (auto known = check_table(base); !known) return known;
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       const VariedPath& varied = takes_.paths()[path];
       const std::vector<std::string_view> texts = takes_.texts_of(path, should_stop);
-      const auto check = [&](std::span<const std::string_view> some) {
-        return check_change_texts(base, {varied.kind, varied.path}, some, settings_.root,
-                                  should_stop);
-      };
-      auto checked = check(texts);
-      if (checked) continue;
-      if (checked.error().code == ErrorCode::Interrupted) return checked;
-      const auto wrong = std::ranges::find_if(texts, [&](const std::string_view& text) {
-        return !check({&text, 1});
-      });
       if (is_stopped(should_stop)) return interrupted();
-      const std::string_view text = wrong != texts.end() ? *wrong : texts.front();
-      return fail(told_after(checked.error(), takes_.place_of(path, text) + ": "));
+      const auto wrong =
+          check_change_texts(base, {varied.kind, varied.path}, texts, settings_.root, should_stop);
+      if (!wrong) continue;
+      if (wrong->error.code == ErrorCode::Interrupted) return fail(wrong->error);
+      return fail(told_after(wrong->error, takes_.place_of(path, texts[wrong->number]) + ": "));
     }
   }
   return {};
 }
 
-Result<void> Sweep::check_frames() const {
+Result<void> Sweep::check_frames(const StopRequest& should_stop) const {
   for (const VariedPath& path : takes_.paths()) {
     if (path.path == "scene.start" || path.path == "scene.end") return {};
   }
   for (const Scene& scene : scenes_) {
+    if (is_stopped(should_stop)) return interrupted();
     Scene base = scene;
     if (auto made = make_changes(base, takes_.set(), settings_.root); !made) return made;
     if (auto frames = frames_of(base); !frames) return fail(frames.error());
@@ -101,18 +110,19 @@ Result<void> Sweep::check_frames() const {
   return {};
 }
 
-Result<void> Sweep::for_each_variant(
-    const std::function<Result<void>(const Scene&)>& look_at) const {
+Result<void> Sweep::for_each_variant(const std::function<Result<void>(const Scene&)>& look_at,
+                                     const StopRequest& should_stop) const {
   for (const Scene& scene : scenes_) {
     Scene base = scene;
     if (auto made = make_changes(base, takes_.set(), settings_.root); !made) return made;
     if (auto looked = look_at(base); !looked) return looked;
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
+      if (is_stopped(should_stop)) return interrupted();
       if (!names_file(base, takes_.paths()[path].path)) continue;
       const auto look = [&](const Scene& changed, const Result<void>& made) {
         return made ? look_at(changed) : Result<void>();
       };
-      if (auto looked = visit_texts(base, takes_, path, settings_.root, look); !looked)
+      if (auto looked = visit_texts(base, takes_, path, settings_.root, look, should_stop); !looked)
         return looked;
     }
   }

@@ -118,14 +118,16 @@ class Sweep {
   Result<void> run(std::span<const std::size_t> takes, const SweepRun& options) const;
 
   /// Calls `look_at` with a scene for each file name that some take gives to a mesh or cache, and
-  /// with each scene as it is. Errors: those of `look_at`.
-  Result<void> for_each_variant(const std::function<Result<void>(const Scene&)>& look_at) const;
+  /// with each scene as it is. Errors: those of `look_at`; Interrupted.
+  Result<void> for_each_variant(const std::function<Result<void>(const Scene&)>& look_at,
+                                const StopRequest& should_stop = {}) const;
 
  private:
   Sweep(std::vector<Scene> scenes, Takes takes, SweepSettings settings);
 
   Result<void> check_values(const StopRequest& should_stop) const;
-  Result<void> check_frames() const;
+  Result<void> check_table(const Scene& scene) const;
+  Result<void> check_frames(const StopRequest& should_stop) const;
 
   std::vector<Scene> scenes_;
   Takes takes_;

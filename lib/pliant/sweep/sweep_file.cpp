@@ -1,12 +1,12 @@
 #include "pliant/sweep/sweep_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <exception>
+#include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
-#include <stdexcept>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -14,8 +14,10 @@
 #include <nlohmann/json.hpp>
 
 #include "pliant/core/read_file.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/mesh/json_reader.hpp"
 #include "pliant/output/atomic_file.hpp"
 #include "pliant/output/writer.hpp"
 
@@ -108,7 +110,7 @@ FileJson texts_of_scenes(const SweepFile& content) {
   return all;
 }
 
-void write_content(const SweepFile& content, JsonFile& out) {
+void write_content(const SweepFile& content, const TakeParts& takes, JsonFile& out) {
   out.text(fmt::format("{{\"sweep\": {},\n\"version\": ", format_version));
   out.value(content.version);
   out.text(",\n\"engine\": ");
@@ -124,12 +126,12 @@ void write_content(const SweepFile& content, JsonFile& out) {
   out.value(files);
   out.text(",\n\"paths\": ");
   FileJson paths = FileJson::array();
-  for (const VariedPath& path : content.takes.paths)
+  for (const VariedPath& path : takes.paths)
     paths.push_back({{"path", path.path}, {"kind", word_of(path.kind)}});
   out.value(paths);
   out.text(",\n\"axes\": [");
-  for (std::size_t k = 0; k < content.takes.axes.size(); ++k) {
-    const TakeAxis& axis = content.takes.axes[k];
+  for (std::size_t k = 0; k < takes.axes.size(); ++k) {
+    const TakeAxis& axis = takes.axes[k];
     out.text(k == 0 ? "\n{\"paths\": " : ",\n{\"paths\": ");
     out.value(axis.paths);
     out.text(fmt::format(", \"count\": {}, \"texts\": [", axis.count));
@@ -142,195 +144,157 @@ void write_content(const SweepFile& content, JsonFile& out) {
   out.text("]}\n");
 }
 
-// Asks whether to stop.
-class Stops {
- public:
-  explicit Stops(const StopRequest& should_stop) : should_stop_(should_stop) {}
-
-  bool ask() { return is_stopped_ = is_stopped_ || pliant::is_stopped(should_stop_); }
-  bool is_stopped() const { return is_stopped_; }
-
- private:
-  const StopRequest& should_stop_;
-  bool is_stopped_ = false;
-};
-
-// The characters of a text, which ends early if that is asked for.
-class StoppingText {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  StoppingText(const char* at, const char* end, Stops& stops)
-      : at_(at), end_(end), stops_(&stops) {}
-
-  const char& operator*() const { return *at_; }
-  StoppingText& operator++() {
-    constexpr std::ptrdiff_t bytes_between_stops = std::ptrdiff_t{1} << 18U;
-    ++at_;
-    if ((end_ - at_) % bytes_between_stops == 0 && stops_->ask()) at_ = end_;
-    return *this;
-  }
-  StoppingText operator++(int) {
-    StoppingText before = *this;
-    ++*this;
-    return before;
-  }
-  bool operator==(const StoppingText& other) const { return at_ == other.at_; }
-
- private:
-  const char* at_;
-  const char* end_;
-  Stops* stops_;
-};
+// Several for each take: a sweep may have a million scenes, and as many meshes.
+constexpr std::size_t most_values = 20'000'000;
 
 // Takes the texts of the axes, nearly all that a large sweep has, out of the JSON while it is
-// parsed, and refuses more than a sweep can have before it takes memory.
+// parsed.
 class AxisTexts {
  public:
-  using Event = FileJson::parse_event_t;
-
-  // For nlohmann-json: whether it keeps what it has parsed. Throws if it is too much.
-  bool operator()(int depth, Event event, FileJson& parsed) {
-    if (event == Event::object_start || event == Event::array_start) {
-      if (depth >= most_depth) throw std::invalid_argument("it is nested too deeply");
-      if (depth >= 4 && is_in_axes()) throw std::invalid_argument("a value of an axis is none");
-      if (event == Event::object_start && depth == 2 && is_in_axes()) texts_.emplace_back();
-      return count();
-    }
-    if (event == Event::key) {
-      if (depth == 1) section_ = parsed.get_ref<const std::string&>();
-      if (depth == 3) member_ = parsed.get_ref<const std::string&>();
-      return count();
-    }
-    if (event != Event::value) return true;
-    if (depth != 4 || !is_in_axes() || member_ != "texts" || texts_.empty()) return count();
-    if (++text_count_ > most_take_texts) throw std::invalid_argument("it has too many values");
-    texts_.back().push_back(parsed.get_ref<const std::string&>());
-    return false;
+  Result<bool> operator()(std::span<const JsonStep> way, const std::string& text) {
+    const bool is_of_axis = way.size() == 4 && way[0].key == "axes" && way[1].is_list &&
+                            way[2].key == "texts" && way[3].is_list;
+    if (!is_of_axis) return false;
+    if (++count_ > most_take_texts) return invalid("it has too many values");
+    texts_.resize(way[1].index + 1);
+    texts_.back().push_back(text);
+    return true;
   }
 
   std::vector<TextList> take() { return std::move(texts_); }
 
  private:
-  static constexpr int most_depth = 6;
-  // Several for each take: a sweep may have a million scenes, and as many meshes.
-  static constexpr std::size_t most_counted = 20'000'000;
-
-  bool is_in_axes() const { return section_ == "axes"; }
-  bool count() {
-    if (++count_ > most_counted) throw std::invalid_argument("it has too many members");
-    return true;
-  }
-
-  std::string section_, member_;
-  std::size_t count_ = 0;
-  std::size_t text_count_ = 0;
   std::vector<TextList> texts_;
+  std::size_t count_ = 0;
 };
 
-// Reads members that must be there; throws if they are not, as nlohmann-json does.
+// Reads what the file has, but for the texts of the axes.
+class SweepFileReader : private JsonReader {
+ public:
+  SweepFileReader(Json& root, std::vector<TextList> texts, const StopRequest& should_stop)
+      : JsonReader(root, should_stop), texts_(std::move(texts)) {}
 
-std::vector<std::string> strings_of(FileJson& json) {
-  std::vector<std::string> strings;
-  strings.reserve(json.size());
-  for (FileJson& one : json) strings.push_back(std::move(one.get_ref<std::string&>()));
-  return strings;
-}
-
-int frame_of(const FileJson& json) {
-  const auto frame = json.is_number_integer() ? json.get<std::int64_t>() : std::int64_t{1} << 40;
-  if (frame < std::numeric_limits<int>::min() || frame > std::numeric_limits<int>::max())
-    throw std::invalid_argument("a frame is none");
-  return static_cast<int>(frame);
-}
-
-SweepRequest request_of(FileJson& arguments) {
-  SweepRequest request;
-  request.scenes = strings_of(arguments.at("scenes"));
-  request.variation.scene_count = request.scenes.size();
-  request.variation.set = strings_of(arguments.at("set"));
-  request.variation.vary = strings_of(arguments.at("vary"));
-  if (const FileJson& samples = arguments.at("sample"); !samples.is_null())
-    request.variation.samples = samples.get<std::size_t>();
-  if (const FileJson& frames = arguments.at("frames"); !frames.is_null())
-    request.frames = TakeFrames{frame_of(frames.at(0)), frame_of(frames.at(1))};
-  const auto solver = solver_choice(arguments.at("solver").get_ref<const std::string&>());
-  if (!solver) throw std::invalid_argument("the solver is unknown");
-  request.solver = *solver;
-  request.root = arguments.at("root").get<std::string>();
-  request.write = arguments.at("write").get<std::string>();
-  // It becomes a part of file names.
-  const std::string written = "takes" + request.write;
-  if (!request.write.empty() && (!check_ending(written) || ending_of(written) != request.write))
-    throw std::invalid_argument("the ending of --write is none");
-  return request;
-}
-
-std::vector<SceneTexts> texts_of(FileJson& scenes) {
-  std::vector<SceneTexts> all;
-  for (FileJson& scene : scenes) {
-    SceneTexts texts{scene.at("file").get<std::string>(), scene.at("text").get<std::string>()};
-    for (const FileJson& one : scene.at("included"))
-      texts.included.push_back({one.at("path").get<std::string>(),
-                                one.at("identity").get<std::string>(),
-                                one.at("text").get<std::string>()});
-    all.push_back(std::move(texts));
+  Result<SweepFile> read() {
+    const std::int64_t version = required_integer(root_, "sweep", 0, most_whole);
+    if (!fault_ && version != format_version) return invalid("another version of the format");
+    SweepFile content;
+    content.version = required_text(root_, "version");
+    content.engine = required_text(root_, "engine");
+    if (Json* const arguments = required_part(root_, "arguments"))
+      within("arguments", [&] { read_arguments(*arguments, content); });
+    each_required(root_, "scenes", [&](Json& json) {
+      SceneTexts& texts = content.texts.emplace_back();
+      texts.file = required_text(json, "file");
+      texts.text = required_text(json, "text");
+      each_required(json, "included", [&](Json& one) {
+        texts.included.push_back({required_text(one, "path"), required_text(one, "identity"),
+                                  required_text(one, "text")});
+      });
+    });
+    if (!fault_ && content.texts.size() != content.request.scenes.size())
+      return invalid("the scenes are not complete");
+    each_required(root_, "files", [&](Json& json) {
+      content.inputs.push_back({required_text(json, "file"), required_hash(json, "hash")});
+    });
+    if (auto read = read_takes(content); !read) return fail(read.error());
+    if (!fault_) return content;
+    Error error = fault().value();
+    if (error.code == ErrorCode::InvalidInput)
+      error.message = "a member is missing, or has a value of another kind: " + error.message;
+    return fail(std::move(error));
   }
-  return all;
-}
 
-TakeParts takes_of(const FileJson& json, std::vector<TextList> texts, const SweepRequest& request) {
-  TakeParts parts{.scene_count = request.scenes.size()};
-  for (const std::string& typed : request.variation.set) {
-    auto change = parse_change(typed);
-    if (!change) throw std::invalid_argument(change.error().message);
-    parts.set.push_back(*std::move(change));
-  }
-  for (const FileJson& one : json.at("paths")) {
-    const auto& kind = one.at("kind").get_ref<const std::string&>();
-    parts.paths.push_back({one.at("path").get<std::string>(), kind == "*" ? SceneChange::Kind::Times
-                                                              : kind == "+"
-                                                                  ? SceneChange::Kind::Plus
-                                                                  : SceneChange::Kind::Set});
-  }
-  const FileJson& axes = json.at("axes");
-  if (axes.size() != texts.size()) throw std::invalid_argument("the axes are not complete");
-  for (std::size_t k = 0; k < texts.size(); ++k)
-    parts.axes.push_back({axes[k].at("paths").get<std::vector<std::size_t>>(), std::move(texts[k]),
-                          axes[k].at("count").get<std::size_t>()});
-  return parts;
-}
+ private:
+  static constexpr auto most_whole = std::numeric_limits<std::int64_t>::max();
 
-SweepFile content_of(FileJson json, std::vector<TextList> texts) {
-  SweepFile content;
-  if (json.at("sweep").get<int>() != format_version)
-    throw std::invalid_argument("another version of the format");
-  content.version = json.at("version").get<std::string>();
-  content.engine = json.at("engine").get<std::string>();
-  content.request = request_of(json.at("arguments"));
-  content.table_hash = json.at("arguments").at("takes").get<std::string>();
-  content.texts = texts_of(json.at("scenes"));
-  if (content.texts.size() != content.request.scenes.size())
-    throw std::invalid_argument("the scenes are not complete");
-  for (const FileJson& one : json.at("files")) {
-    const auto hash = to_hash(one.at("hash").get_ref<const std::string&>());
-    if (!hash) throw std::invalid_argument("a hash is none");
-    content.inputs.push_back({one.at("file").get<std::string>(), *hash});
+  Json* required_part(Json& parent, const char* key) {
+    if (!member(parent, key)) refuse(key, "is missing");
+    return part(parent, key);
   }
-  content.takes = takes_of(json, std::move(texts), content.request);
-  return content;
-}
+
+  std::vector<std::string> required_texts(Json& parent, const char* key) {
+    if (!member(parent, key)) refuse(key, "is missing");
+    return texts(parent, key);
+  }
+
+  // A member that must be there; null: it is null.
+  Json* given(Json& parent, const char* key) {
+    Json* const json = member(parent, key);
+    if (!json) refuse(key, "is missing");
+    return json && !json->is_null() ? json : nullptr;
+  }
+
+  void read_arguments(Json& json, SweepFile& content) {
+    SweepRequest& request = content.request;
+    request.scenes = required_texts(json, "scenes");
+    request.variation.scene_count = request.scenes.size();
+    request.variation.set = required_texts(json, "set");
+    request.variation.vary = required_texts(json, "vary");
+    if (given(json, "sample"))
+      request.variation.samples = static_cast<std::size_t>(required_whole(json, "sample"));
+    if (given(json, "frames")) {
+      const auto frames = numbers(json, "frames", 2).value_or(std::vector<double>(2));
+      for (const double frame : frames)
+        if (frame != std::trunc(frame) || !(std::fabs(frame) <= std::numeric_limits<int>::max()))
+          refuse("frames", "has an element that is no frame");
+      if (!fault_)
+        request.frames = TakeFrames{static_cast<int>(frames[0]), static_cast<int>(frames[1])};
+    }
+    const auto solver = solver_choice(required_text(json, "solver"));
+    if (!solver) refuse("solver", "is unknown");
+    request.solver = solver.value_or(SolverChoice::Auto);
+    request.root = required_text(json, "root");
+    request.write = required_text(json, "write");
+    // It becomes a part of file names.
+    const std::string written = "takes" + request.write;
+    if (!request.write.empty() && (!check_ending(written) || ending_of(written) != request.write))
+      refuse("write", "is no ending of an animation");
+    content.table_hash = required_text(json, "takes");
+  }
+
+  Result<void> read_takes(SweepFile& content) {
+    TakeParts& parts = content.takes;
+    parts.scene_count = content.request.scenes.size();
+    for (const std::string& typed : content.request.variation.set) {
+      auto change = parse_change(typed);
+      if (!change) return fail(change.error());
+      parts.set.push_back(*std::move(change));
+    }
+    each_required(root_, "paths", [&](Json& json) {
+      const std::string kind = required_text(json, "kind");
+      parts.paths.push_back({required_text(json, "path"), kind == "*"   ? SceneChange::Kind::Times
+                                                          : kind == "+" ? SceneChange::Kind::Plus
+                                                                        : SceneChange::Kind::Set});
+    });
+    each_required(root_, "axes", [&](Json& json) {
+      TakeAxis& axis = parts.axes.emplace_back();
+      each_path(json, axis.paths);
+      axis.count = static_cast<std::size_t>(required_whole(json, "count"));
+      if (!texts(json, "texts").empty()) refuse("texts", "is no list of texts");
+      if (parts.axes.size() <= texts_.size()) axis.texts = std::move(texts_[parts.axes.size() - 1]);
+    });
+    return {};
+  }
+
+  void each_path(Json& json, std::vector<std::size_t>& paths) {
+    Json* const list = member(json, "paths");
+    if (!list || !list->is_array()) return refuse("paths", "is missing");
+    for (std::size_t k = 0; k < list->size() && goes_on(); ++k) {
+      const auto path = to_whole((*list)[k]);
+      if (!path) refuse("paths", "has an element that is not a whole number of at least 0");
+      paths.push_back(static_cast<std::size_t>(path.value_or(0)));
+    }
+  }
+
+  std::vector<TextList> texts_;
+};
 
 // `--vary a=1 --vary b=2`, or `no --vary`.
 std::string options_text(std::string_view option, const std::vector<std::string>& values) {
   if (values.empty()) return fmt::format("no {}", option);
   std::string text;
   for (const std::string& value : values)
-    text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, printable(value));
+    text += fmt::format("{}{} {}", text.empty() ? "" : " ", option, value);
   return text;
 }
 
@@ -339,19 +303,18 @@ std::string frames_text(const std::optional<TakeFrames>& frames) {
 }
 
 std::string one_text(std::string_view option, const std::string& value) {
-  return value.empty() ? fmt::format("no {}", option)
-                       : fmt::format("{} {}", option, printable(value));
+  return value.empty() ? fmt::format("no {}", option) : fmt::format("{} {}", option, value);
 }
 
 }  // namespace
 
-Result<bool> write_sweep_file(const SweepFile& content, const std::filesystem::path& file,
-                              const StopRequest& should_stop) {
+Result<bool> write_sweep_file(const SweepFile& content, const TakeParts& takes,
+                              const std::filesystem::path& file, const StopRequest& should_stop) {
   auto opened = AtomicFile::create(file);
   if (!opened) return fail(opened.error());
   JsonFile out(*opened, should_stop);
   try {
-    write_content(content, out);
+    write_content(content, takes, out);
   } catch (const FileJson::exception&) {
     return fail(ErrorCode::InvalidInput,
                 "the names and values of a sweep must be UTF-8, but one is not");
@@ -380,27 +343,28 @@ Result<SweepFile> read_sweep_file(const std::filesystem::path& file,
         fmt::format("is not the file of a sweep that this pliant can read: {}", printable(reason)),
         file.string());
   };
-  try {
-    Stops stops(should_stop);
-    AxisTexts texts;
-    const char* const end = text->data() + text->size();
-    FileJson json = FileJson::parse(StoppingText(text->data(), end, stops),
-                                    StoppingText(end, end, stops), std::ref(texts), false);
-    if (stops.is_stopped()) return interrupted();
-    if (json.is_discarded()) return refuse("it is no JSON");
-    *text = std::string();
-    return content_of(std::move(json), texts.take());
-  } catch (const FileJson::exception&) {
-    return refuse("a member is missing, or has a value of another kind");
-  } catch (const std::exception& error) {
-    return refuse(error.what());
-  }
+  AxisTexts texts;
+  auto json = parse_json(*text, "JSON", should_stop, most_values, std::ref(texts));
+  *text = std::string();
+  auto content = json ? SweepFileReader(*json, texts.take(), should_stop).read()
+                      : Result<SweepFile>(fail(json.error()));
+  if (content || content.error().code == ErrorCode::Interrupted) return content;
+  return refuse(content.error().message);
 }
 
 std::string difference_of(const SweepFile& there, const SweepFile& asked) {
   const SweepRequest &a = there.request, &b = asked.request;
   const auto differ = [](const std::string& one, const std::string& other) {
-    return one == other ? std::string() : fmt::format("{}, not {}", one, other);
+    constexpr std::size_t longest = 1000;
+    if (one == other) return std::string();
+    // Of long texts only what begins with the first difference.
+    const auto first = std::ranges::mismatch(one, other).in1 - one.begin();
+    const bool is_long = std::max(one.size(), other.size()) > longest;
+    const auto begin = is_long ? static_cast<std::size_t>(first) : 0;
+    const auto told = [&](const std::string& text) {
+      return (begin > 0 ? "…" : "") + shortened(printable(text.substr(begin)), longest);
+    };
+    return fmt::format("{}, not {}", told(one), told(other));
   };
   const auto samples = [](const SweepRequest& request) {
     return request.variation.samples ? fmt::format("--sample {}", *request.variation.samples)
@@ -425,9 +389,11 @@ std::string difference_of(const SweepFile& there, const SweepFile& asked) {
       differ(one_text("--write", a.write), one_text("--write", b.write))};
   for (const std::string& difference : differences)
     if (!difference.empty()) return difference;
+  if (there.texts.size() != asked.texts.size())
+    return fmt::format("{} scenes, not {}", there.texts.size(), asked.texts.size());
   for (std::size_t k = 0; k < there.texts.size(); ++k) {
     const SceneTexts &one = there.texts[k], &other = asked.texts[k];
-    if (auto difference = differ(printable(one.file), printable(other.file)); !difference.empty())
+    if (auto difference = differ(one.file, other.file); !difference.empty())
       return "the scene " + difference;
     if (one.text != other.text) return fmt::format("another text of {}", printable(one.file));
     for (std::size_t n = 0; n < std::max(one.included.size(), other.included.size()); ++n) {

@@ -10,6 +10,7 @@
 
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/scene/changed_values.hpp"
 #include "pliant/sweep/csv.hpp"
 #include "pliant/sweep/sobol.hpp"
 #include "pliant/sweep/values.hpp"
@@ -27,17 +28,15 @@ Result<void> check_text_count(std::size_t count) {
                             most_take_texts));
 }
 
+constexpr std::size_t parts_of_value = 16;  // for a StopPoll
+
 std::string vary_option(const std::string& typed) { return "--vary " + printable(typed); }
 
-// Whether all rows below the header have one value in a column.
+// Whether all rows below the header have one value in a column. Requires: all are as wide.
 bool is_the_same(const std::vector<CsvRow>& rows, std::size_t column) {
-  const std::string* first = nullptr;
-  for (std::size_t k = 1; k < rows.size(); ++k) {
-    if (rows[k].fields.size() <= column) continue;
-    if (!first) first = &rows[k].fields[column];
-    if (rows[k].fields[column] != *first) return false;
-  }
-  return true;
+  return std::all_of(rows.begin() + 1, rows.end(), [&](const CsvRow& row) {
+    return row.fields[column] == rows[1].fields[column];
+  });
 }
 
 }  // namespace
@@ -51,20 +50,21 @@ std::string VariedPath::title() const {
 Result<Takes> Takes::make(const SweepVariation& variation, const StopRequest& should_stop) {
   Takes takes;
   takes.parts_.scene_count = variation.scene_count;
+  ChangedValues values;
   for (const std::string& typed : variation.set) {
     auto change = parse_change(typed);
     if (!change) return refuse("--set " + change.error().message);
-    for (const SceneChange& other : takes.parts_.set) {
-      if (change->overlaps(other) || other.overlaps(*change))
-        return refuse(fmt::format("--set {}: {} changes the same value", typed, other.typed()));
-    }
+    if (const auto other = values.add(*change))
+      return refuse(fmt::format("--set {}: {} changes the same value", typed,
+                                takes.parts_.set[*other].typed()));
     takes.parts_.set.push_back(*std::move(change));
   }
   if (variation.table) {
     if (!variation.vary.empty() || variation.samples)
       return refuse("--takes: the table says what varies, so it excludes --vary and --sample");
-    if (auto read = takes.read_table(variation, should_stop); !read) return fail(read.error());
-  } else if (auto read = takes.read_axes(variation, should_stop); !read) {
+    if (auto read = takes.read_table(variation, values, should_stop); !read)
+      return fail(read.error());
+  } else if (auto read = takes.read_axes(variation, values, should_stop); !read) {
     return fail(read.error());
   }
   if (auto counted = takes.count_takes(); !counted) return fail(counted.error());
@@ -93,21 +93,24 @@ Result<Takes> Takes::of(TakeParts parts) {
   return takes;
 }
 
-Result<void> Takes::add_path(const std::string& option, const SceneChange& change) {
-  for (const SceneChange& other : parts_.set) {
-    if (change.overlaps(other) || other.overlaps(change))
-      return refuse(fmt::format("{}: --set {} sets the same value", option, other.typed()));
-  }
-  for (const VariedPath& other : parts_.paths) {
-    const SceneChange earlier{other.kind, other.path, {}};
-    if (change.overlaps(earlier) || earlier.overlaps(change))
-      return refuse(fmt::format("{}: {} varies the same value", option, other.title()));
+// Of a table nothing is quoted: it may still be any file.
+Result<void> Takes::add_path(const std::string& option, const SceneChange& change,
+                             ChangedValues& values) {
+  if (const auto other = values.add(change)) {
+    if (*other < parts_.set.size())
+      return refuse(
+          fmt::format("{}: --set {} sets the same value", option, parts_.set[*other].typed()));
+    return refuse(fmt::format("{}: {} varies the same value", option,
+                              table_title_.empty()
+                                  ? parts_.paths[*other - parts_.set.size()].title()
+                                  : "another column"));
   }
   parts_.paths.push_back({change.path, change.kind, option});
   return {};
 }
 
-Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest& should_stop) {
+Result<void> Takes::read_axes(const SweepVariation& variation, ChangedValues& values,
+                              const StopRequest& should_stop) {
   struct Interval {
     double from, to;
   };
@@ -117,15 +120,17 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
     const std::string option = vary_option(typed);
     const auto change = parse_change(typed);
     if (!change) return refuse(option + ": write PATH=VALUES, PATH*=VALUES or PATH+=VALUES");
-    auto values = parse_axis_values(change->text);
-    if (!values) return refuse(fmt::format("{}: {}", option, values.error().message));
-    if (auto added = add_path(option, *change); !added) return added;
-    if (!values->is_interval()) {
-      const std::size_t count = values->texts.size();
+    auto run = parse_axis_values(change->text, should_stop);
+    if (!run && run.error().code == ErrorCode::Interrupted) return fail(run.error());
+    if (!run) return refuse(fmt::format("{}: {}", option, run.error().message));
+    if (auto added = add_path(option, *change, values); !added) return added;
+    if (!run->is_interval()) {
       TakeAxis& axis = parts_.axes.emplace_back();
       axis.paths = {parts_.paths.size() - 1};
-      axis.count = count;
-      for (const std::string& text : values->texts) axis.texts.push_back(text);
+      axis.count = run->texts.size();
+      for (const std::string& text : run->texts) axis.texts.push_back(text);
+      // Ahead of further ones, each of which may have a million values.
+      if (auto counted = count_takes(); !counted) return counted;
       continue;
     }
     if (!variation.samples)
@@ -135,7 +140,7 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
                       option));
     if (intervals.size() == most_intervals)
       return refuse(fmt::format("{}: at most {} intervals can be sampled", option, most_intervals));
-    intervals.push_back({values->from, values->to});
+    intervals.push_back({run->from, run->to});
     sampled.paths.push_back(parts_.paths.size() - 1);
   }
   if (!variation.samples) return {};
@@ -146,20 +151,25 @@ Result<void> Takes::read_axes(const SweepVariation& variation, const StopRequest
                               most_takes));
   sampled.count = *variation.samples;
   if (auto few = check_text_count(sampled.count * intervals.size()); !few) return few;
-  const std::vector<double> points = sobol_points(intervals.size(), 0, sampled.count);
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    if (is_stopped(should_stop, k)) return interrupted();
-    const auto& [from, to] = intervals[k % intervals.size()];
-    const double value = from + (to - from) * points[k];
-    if (!std::isfinite(value))
-      return refuse(fmt::format("--sample: the interval {}:{} is too long", from, to));
-    sampled.texts.push_back(fmt::format("{}", value));
+  constexpr std::size_t points_at_once = 1024;
+  for (std::size_t first = 0; first < sampled.count; first += points_at_once) {
+    if (is_stopped(should_stop)) return interrupted();
+    const std::vector<double> points =
+        sobol_points(intervals.size(), first, std::min(points_at_once, sampled.count - first));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const auto& [from, to] = intervals[k % intervals.size()];
+      const double value = from + (to - from) * points[k];
+      if (!std::isfinite(value))
+        return refuse(fmt::format("--sample: the interval {}:{} is too long", from, to));
+      sampled.texts.push_back(fmt::format("{}", value));
+    }
   }
   parts_.axes.insert(parts_.axes.begin(), std::move(sampled));
   return {};
 }
 
-Result<void> Takes::read_table(const SweepVariation& variation, const StopRequest& should_stop) {
+Result<void> Takes::read_table(const SweepVariation& variation, ChangedValues& values,
+                               const StopRequest& should_stop) {
   auto rows = parse_csv(*variation.table, most_takes + 1, should_stop);  // and the header
   table_title_ =
       variation.table_name.empty() ? "--takes" : "--takes " + printable(variation.table_name);
@@ -171,13 +181,18 @@ Result<void> Takes::read_table(const SweepVariation& variation, const StopReques
   if (rows->size() < 2)
     return refuse(table_title_ + ": the table needs a header of paths, and a row a take");
   const CsvRow& header = rows->front();
+  for (const CsvRow& row : *rows) {
+    if (row.fields.size() != header.fields.size())
+      return at_line(row.line, fmt::format("has {} values, but the header has {} columns",
+                                           row.fields.size(), header.fields.size()));
+  }
   TakeAxis axis;
   std::vector<std::size_t> columns;
   for (std::size_t column = 0; column < header.fields.size(); ++column) {
     if (is_stopped(should_stop)) return interrupted();
     const std::string field(trim(header.fields[column], ascii_blanks));
     const bool is_empty = field.empty() && std::ranges::all_of(*rows, [&](const CsvRow& row) {
-                            return row.fields.size() <= column || row.fields[column].empty();
+                            return row.fields[column].empty();
                           });
     if (is_empty) continue;  // some programs end each row by a separator
     if (field == "scene" && (parts_.scene_count > 1 || !is_the_same(*rows, column))) {
@@ -198,21 +213,18 @@ Result<void> Takes::read_table(const SweepVariation& variation, const StopReques
     }
     if (change.path.empty()) return at_line(header.line, "a path is missing in the header");
     axis.paths.push_back(parts_.paths.size());
-    if (auto added =
-            add_path(fmt::format("{}, line {}: {}", table_title_, header.line, field), change);
-        !added)
-      return added;
+    const std::string option =
+        fmt::format("{}, line {}: column {}", table_title_, header.line, column + 1);
+    if (auto added = add_path(option, change, values); !added) return added;
   }
   if (columns.empty()) return at_line(header.line, "no column is headed by a path NAME.ATTRIBUTE");
   axis.count = rows->size() - 1;
   if (auto few = check_text_count(axis.count * columns.size()); !few) return few;
+  StopPoll stop(should_stop);
   for (std::size_t k = 1; k < rows->size(); ++k) {
-    if (is_stopped(should_stop, k)) return interrupted();
     CsvRow& row = (*rows)[k];
+    if (stop.after(parts_of_value * row.fields.size())) return interrupted();
     row_lines_.push_back(row.line);
-    if (row.fields.size() != header.fields.size())
-      return at_line(row.line, fmt::format("has {} values, but the header has {} columns",
-                                           row.fields.size(), header.fields.size()));
     for (const std::size_t column : columns) axis.texts.push_back(row.fields[column]);
     row.fields = {};
   }
@@ -242,20 +254,16 @@ std::string Takes::place_of(std::size_t path, std::string_view text) const {
   return fmt::format("{}, line {}", table_title_, row_lines_[row]);
 }
 
-std::size_t Takes::row_of(std::size_t axis, std::size_t take) const {
-  for (std::size_t k = parts_.axes.size(); k-- > axis + 1;) take /= parts_.axes[k].count;
-  return take % parts_.axes[axis].count;
-}
-
 std::size_t Takes::scene_of(std::size_t take) const { return take / (count_ / parts_.scene_count); }
 
 std::vector<std::string_view> Takes::texts(std::size_t take) const {
   std::vector<std::string_view> texts(parts_.paths.size());
-  for (std::size_t k = 0; k < parts_.axes.size(); ++k) {
+  for (std::size_t k = parts_.axes.size(); k-- > 0;) {
     const TakeAxis& axis = parts_.axes[k];
-    const std::size_t first = row_of(k, take) * axis.paths.size();
+    const std::size_t first = take % axis.count * axis.paths.size();
     for (std::size_t n = 0; n < axis.paths.size(); ++n)
       texts[axis.paths[n]] = axis.texts[first + n];
+    take /= axis.count;
   }
   return texts;
 }
@@ -272,13 +280,15 @@ std::vector<std::string_view> Takes::texts_of(std::size_t path,
                                               const StopRequest& should_stop) const {
   std::vector<std::string_view> texts;
   std::unordered_set<std::string_view> known;
+  StopPoll stop(should_stop);
   for (const TakeAxis& axis : parts_.axes) {
     const auto found = std::find(axis.paths.begin(), axis.paths.end(), path);
     if (found == axis.paths.end()) continue;
+    known.reserve(axis.count);  // at once: to grow it again and again would take long in one piece
     for (auto k = static_cast<std::size_t>(found - axis.paths.begin()); k < axis.texts.size();
          k += axis.paths.size()) {
       if (known.insert(axis.texts[k]).second) texts.push_back(axis.texts[k]);
-      if (is_stopped(should_stop, known.size())) return texts;
+      if (stop.after(parts_of_value)) return texts;
     }
   }
   return texts;

@@ -13,6 +13,8 @@
 
 namespace pliant {
 
+class ChangedValues;
+
 /// The most values that all axes of a sweep may have, each counted where it stands: a hundred for
 /// each of a million takes.
 inline constexpr std::size_t most_take_texts = 100'000'000;
@@ -73,6 +75,9 @@ class Takes {
   const std::vector<SceneChange>& set() const { return parts_.set; }
   const std::vector<VariedPath>& paths() const { return parts_.paths; }
 
+  /// `--takes FILE` of a table, for messages; empty: there is none.
+  const std::string& table_title() const { return table_title_; }
+
   /// The columns of a table that are no paths, such as the measures of an earlier sweep.
   const std::vector<std::string>& columns_left_out() const { return columns_left_out_; }
 
@@ -91,11 +96,13 @@ class Takes {
                                          const StopRequest& should_stop = {}) const;
 
  private:
-  Result<void> read_axes(const SweepVariation& variation, const StopRequest& should_stop);
-  Result<void> read_table(const SweepVariation& variation, const StopRequest& should_stop);
-  Result<void> add_path(const std::string& option, const SceneChange& change);
+  Result<void> read_axes(const SweepVariation& variation, ChangedValues& values,
+                         const StopRequest& should_stop);
+  Result<void> read_table(const SweepVariation& variation, ChangedValues& values,
+                          const StopRequest& should_stop);
+  Result<void> add_path(const std::string& option, const SceneChange& change,
+                        ChangedValues& values);
   Result<void> count_takes();
-  std::size_t row_of(std::size_t axis, std::size_t take) const;
 
   TakeParts parts_;
   std::size_t count_ = 0;

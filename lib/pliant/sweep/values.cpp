@@ -45,7 +45,7 @@ Result<std::size_t> count_of(std::string_view text) {
 }
 
 // A..B
-Result<AxisValues> integers(std::int64_t first, std::int64_t last) {
+Result<AxisValues> integers(std::int64_t first, std::int64_t last, const StopRequest& should_stop) {
   if (last < first)
     return fail(
         ErrorCode::InvalidInput,
@@ -55,15 +55,19 @@ Result<AxisValues> integers(std::int64_t first, std::int64_t last) {
     return fail(ErrorCode::InvalidInput,
                 fmt::format("{}..{} are more than {} values", first, last, most_takes));
   AxisValues values;
-  for (std::int64_t k = first; k < last; ++k) values.texts.push_back(fmt::format("{}", k));
+  for (std::int64_t k = first; k < last; ++k) {
+    if (is_stopped(should_stop, values.texts.size())) return interrupted();
+    values.texts.push_back(fmt::format("{}", k));
+  }
   values.texts.push_back(fmt::format("{}", last));
   return values;
 }
 
 // docs/sweeps.md: from left to right, in double.
-Result<AxisValues> evenly(double a, double b, std::size_t count) {
+Result<AxisValues> evenly(double a, double b, std::size_t count, const StopRequest& should_stop) {
   AxisValues values;
   for (std::size_t k = 0; k < count; ++k) {
+    if (is_stopped(should_stop, k)) return interrupted();
     const double value =
         count == 1       ? a
         : k + 1 == count ? b
@@ -76,7 +80,8 @@ Result<AxisValues> evenly(double a, double b, std::size_t count) {
   return values;
 }
 
-Result<AxisValues> evenly_in_logarithm(double a, double b, std::size_t count) {
+Result<AxisValues> evenly_in_logarithm(double a, double b, std::size_t count,
+                                       const StopRequest& should_stop) {
   if (a == 0 || b == 0 || (a > 0) != (b > 0))
     return fail(ErrorCode::InvalidInput,
                 fmt::format("{} and {} must have one sign, and neither may be 0, to be divided in "
@@ -86,6 +91,7 @@ Result<AxisValues> evenly_in_logarithm(double a, double b, std::size_t count) {
   const double from = log_of(std::abs(a)), to = log_of(std::abs(b));
   AxisValues values;
   for (std::size_t k = 0; k < count; ++k) {
+    if (is_stopped(should_stop, k)) return interrupted();
     const bool is_last = k + 1 == count && count > 1;
     const double value = k == 0    ? a
                          : is_last ? b
@@ -98,11 +104,11 @@ Result<AxisValues> evenly_in_logarithm(double a, double b, std::size_t count) {
 
 }  // namespace
 
-Result<AxisValues> parse_axis_values(std::string_view text) {
+Result<AxisValues> parse_axis_values(std::string_view text, const StopRequest& should_stop) {
   if (const std::size_t dots = text.find(".."); dots != std::string_view::npos) {
     const auto first = integer_of(trimmed(text.substr(0, dots)));
     const auto last = integer_of(trimmed(text.substr(dots + 2)));
-    if (first && last) return integers(*first, *last);
+    if (first && last) return integers(*first, *last, should_stop);
   }
   const std::vector<std::string_view> parts = split(text, ':');
   if (parts.size() >= 2 && parts.size() <= 4) {
@@ -111,8 +117,8 @@ Result<AxisValues> parse_axis_values(std::string_view text) {
       if (parts.size() == 2) return AxisValues{{}, *a, *b};
       const auto count = count_of(parts[2]);
       if (!count) return fail(count.error());
-      if (parts.size() == 3) return evenly(*a, *b, *count);
-      if (parts[3] == "log") return evenly_in_logarithm(*a, *b, *count);
+      if (parts.size() == 3) return evenly(*a, *b, *count, should_stop);
+      if (parts[3] == "log") return evenly_in_logarithm(*a, *b, *count, should_stop);
       return fail(ErrorCode::InvalidInput,
                   fmt::format("\"{}\" is no way to divide an interval; write log or nothing",
                               printable(parts[3])));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 
 namespace pliant {
 
@@ -31,7 +32,7 @@ struct AxisValues {
 ///
 /// Errors: InvalidInput, in words that can follow `--vary PATH=VALUES: `: an empty value, a count
 /// that is not from 1 to `most_takes`, A..B that falls, a logarithm of 0 or of two signs, a number
-/// that is not finite.
-Result<AxisValues> parse_axis_values(std::string_view text);
+/// that is not finite. Interrupted.
+Result<AxisValues> parse_axis_values(std::string_view text, const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -12,9 +12,10 @@ SweepWatch::SweepWatch(std::unique_ptr<LogReader> reader, std::vector<bool> take
 SweepWatch::SweepWatch(SweepWatch&&) noexcept = default;
 SweepWatch::~SweepWatch() = default;
 
-Result<SweepWatch> SweepWatch::begin(const std::string& folder, std::vector<bool> takes) {
+Result<SweepWatch> SweepWatch::begin(const std::string& folder, std::vector<bool> takes,
+                                     const StopRequest& should_stop) {
   auto reader = std::make_unique<LogReader>(std::filesystem::path(folder) / "log");
-  if (auto skipped = reader->skip(); !skipped) return fail(skipped.error());
+  if (auto skipped = reader->skip(should_stop); !skipped) return fail(skipped.error());
   return SweepWatch(std::move(reader), std::move(takes));
 }
 

@@ -16,8 +16,9 @@ class LogReader;
 /// A look costs one at the size of each file of the log, and what was added.
 class SweepWatch {
  public:
-  /// For the takes that are true. Errors: Unreadable.
-  static Result<SweepWatch> begin(const std::string& folder, std::vector<bool> takes);
+  /// For the takes that are true. Errors: Unreadable; Interrupted.
+  static Result<SweepWatch> begin(const std::string& folder, std::vector<bool> takes,
+                                  const StopRequest& should_stop = {});
 
   SweepWatch(SweepWatch&&) noexcept;
   SweepWatch& operator=(SweepWatch&&) = delete;
