@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
@@ -20,8 +21,9 @@
 namespace pliant::cli {
 namespace {
 
-constexpr std::size_t most_kept = std::size_t{1} << 16U;  // of a line, and of messages [bytes]
-constexpr int tick = 100;                                 // [ms]
+constexpr std::size_t most_kept = std::size_t{1} << 16U;     // of a line, and of messages [bytes]
+constexpr std::size_t most_written = std::size_t{1} << 28U;  // by a program [bytes]
+constexpr int tick = 100, shortest_tick = 2;                 // [ms]
 
 tl::unexpected<Error> cannot_start(const std::string& program, int error) {
   return fail(ErrorCode::Unwritable,
@@ -105,18 +107,12 @@ class Lines {
   std::string line_;
 };
 
-// Waits until a process has ended, and returns its code; null: it was asked to stop.
-std::optional<int> code_of(pid_t id, const StopRequest& should_stop) {
-  constexpr useconds_t shortest = 100, longest = 1000 * tick;  // [µs]
-  for (useconds_t pause = shortest;; pause = std::min(2 * pause, longest)) {
-    int status = 0;
-    const pid_t ended = waitpid(id, &status, should_stop ? WNOHANG : 0);
-    if (ended == id) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    if (ended < 0 && errno != EINTR) return -1;
-    if (!should_stop) continue;
-    if (should_stop()) return {};
-    usleep(pause);
-  }
+// The code of a process that has ended; null: it has not.
+std::optional<int> code_of(pid_t id, int options = WNOHANG) {
+  int status = 0;
+  const pid_t ended = waitpid(id, &status, options);
+  if (ended == id) return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ended < 0 && errno != EINTR ? std::optional(-1) : std::nullopt;
 }
 
 // Reads what is there. False at its end.
@@ -184,37 +180,54 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
 
 Result<ProgramEnd> run_program(const std::vector<std::string>& words, const ProgramRun& run) {
   Pipe output, errors;
-  if (!output.open() || (!run.passes_errors && !errors.open()))
-    return cannot_start(words.front(), errno);
-  const int its_errors = run.passes_errors ? STDERR_FILENO : errors.writing.get();
-  const auto id =
-      start_child(words, {.output = output.writing.get(), .errors = its_errors}, run.dropped);
+  if (!output.open() || !errors.open()) return cannot_start(words.front(), errno);
+  const auto id = start_child(
+      words, {.output = output.writing.get(), .errors = errors.writing.get()}, run.dropped);
   if (!id) return fail(id.error());
+  const auto begin = std::chrono::steady_clock::now();
   output.writing.close();  // otherwise the pipes would never end
   errors.writing.close();
   ProgramEnd end;
-  Lines lines(run.take_line);
-  const auto take_output = [&](std::string_view bytes) { lines.add(bytes); };
+  std::size_t written = 0;
+  Lines lines(run.take_line), messages(run.take_message);
+  const auto take_output = [&](std::string_view bytes) {
+    written += bytes.size();
+    lines.add(bytes);
+  };
   const auto take_errors = [&](std::string_view bytes) {
-    end.errors += bytes.substr(0, most_kept - end.errors.size());
+    written += bytes.size();
+    messages.add(bytes);
+    if (!run.take_message) end.errors += bytes.substr(0, most_kept - end.errors.size());
   };
-  const auto stop = [&] {
+  const auto kill_it = [&] {
     kill(-*id, SIGKILL);
-    (void)code_of(*id, {});
-    return interrupted();
+    while (!code_of(*id, 0)) continue;
   };
-  while (output.reading.get() >= 0 || errors.reading.get() >= 0) {
-    if (run.should_stop && run.should_stop()) return stop();
+  const auto refuse = [&](const std::string& reason) {
+    kill_it();
+    return fail(ErrorCode::Unwritable, fmt::format("{} {}", words.front(), reason));
+  };
+  for (std::optional<int> code; !code;) {
+    if (run.should_stop && run.should_stop()) {
+      kill_it();
+      return interrupted();
+    }
+    if (std::chrono::steady_clock::now() - begin > run.patience)
+      return refuse(fmt::format("gives no answer within {} s", run.patience.count()));
+    if (written > most_written)
+      return refuse(fmt::format("writes more than {} MiB", most_written >> 20U));
     // poll passes over descriptors that are closed.
     pollfd ready[] = {{output.reading.get(), POLLIN, 0}, {errors.reading.get(), POLLIN, 0}};
-    if (poll(ready, 2, tick) <= 0) continue;
-    if (ready[0].revents != 0) read_some(output.reading, take_output);
-    if (ready[1].revents != 0) read_some(errors.reading, take_errors);
+    const bool are_closed = ready[0].fd < 0 && ready[1].fd < 0;
+    if (poll(ready, 2, are_closed ? shortest_tick : tick) > 0) {
+      if (ready[0].revents != 0) read_some(output.reading, take_output);
+      if (ready[1].revents != 0) read_some(errors.reading, take_errors);
+    } else if ((code = code_of(*id))) {
+      end.code = *code;
+    }
   }
   lines.finish();
-  const auto code = code_of(*id, run.should_stop);  // it may have closed its streams before
-  if (!code) return stop();
-  end.code = *code;
+  messages.finish();
   return end;
 }
 

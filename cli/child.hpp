@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <span>
@@ -40,17 +41,21 @@ struct ProgramRun {
   /// Called with each line of its output, without the line end; of one that is longer than 64 KiB,
   /// only with so much.
   std::function<void(std::string_view)> take_line = {};
-  bool passes_errors = false;    ///< its messages go to our stderr as they are
+  /// The same for its messages, which are kept if it is empty.
+  std::function<void(std::string_view)> take_message = {};
+  std::chrono::seconds patience = std::chrono::seconds(30);  ///< after which it is killed
   StopRequest should_stop = {};  ///< asked ten times a second; true: it is killed
 };
 
 /// How a program ended.
 struct ProgramEnd {
   int code = 0;             ///< its exit code; -1: a signal ended it
-  std::string errors = {};  ///< what it wrote to stderr, unless passed on: the first 64 KiB
+  std::string errors = {};  ///< what it wrote to stderr: the first 64 KiB
 };
 
-/// Runs a program to its end. Errors: those of `start_child`; Interrupted.
+/// Runs a program to its end; what it leaves running in the background is not waited for. Errors:
+/// those of `start_child`; Unwritable: it did not end in time, or wrote more than 256 MiB;
+/// Interrupted.
 Result<ProgramEnd> run_program(const std::vector<std::string>& words, const ProgramRun& run = {});
 
 }  // namespace pliant::cli

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string_view>
 #include <thread>
@@ -13,6 +14,7 @@
 
 #include "child.hpp"
 #include "interrupt.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/core/text.hpp"
 #include "report.hpp"
 
@@ -37,13 +39,31 @@ std::optional<Number> number_in(std::string_view text) {
   return number;
 }
 
+std::string told(std::string_view line) {
+  constexpr std::size_t longest = 1000;
+  return printable(shortened(line, longest));
+}
+
+// Passes on what a program says, the first lines of it.
+class Messages {
+ public:
+  void operator()(std::string_view line) {
+    constexpr int most = 200;
+    if (++count_ <= most) print(stderr, told(line) + '\n');
+    if (count_ == most + 1) print(stderr, "…\n");
+  }
+
+ private:
+  int count_ = 0;
+};
+
 // The last line is the reason; lines before it tell of attempts.
 tl::unexpected<Error> no_answer(std::string_view program, const ProgramEnd& end) {
   std::string_view text = trim(end.errors, ascii_blanks);
   text = text.substr(text.find_last_of('\n') + 1);
   return fail(ErrorCode::Unwritable, text.empty()
                                          ? fmt::format("{} ended with code {}", program, end.code)
-                                         : fmt::format("{}: {}", program, printable(text)));
+                                         : fmt::format("{}: {}", program, told(text)));
 }
 
 bool names_no_job(const ProgramEnd& end) {
@@ -156,7 +176,9 @@ Result<Presence> look_for(const SlurmJob& job, bool& has_run) {
   words.emplace_back("--format=%T");
   const auto end = run_program(
       words, {.dropped = list_settings, .take_line = note, .should_stop = &was_interrupted});
-  if (!end) return fail(end.error());
+  if (!end && (end.error().code == ErrorCode::Interrupted || !is_on_path("squeue")))
+    return fail(end.error());
+  if (!end) return Presence::Unknown;
   if (end->code != 0) return names_no_job(*end) ? Presence::Gone : Presence::Unknown;
   return is_there ? Presence::There : Presence::Gone;
 }
@@ -185,10 +207,6 @@ std::optional<SlurmJob> parse_slurm_job(std::string_view text) {
 }
 
 Result<std::size_t> max_array_size(std::chrono::seconds patience) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto should_stop = [&] {
-    return was_interrupted() || std::chrono::steady_clock::now() - begin > patience;
-  };
   std::optional<std::size_t> size;
   const auto take = [&](std::string_view line) {
     const std::size_t equals = line.find('=');
@@ -198,10 +216,8 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience) {
     size = number_in<std::size_t>(trim(line.substr(equals + 1), ascii_blanks));
   };
   const auto end =
-      run_program({"scontrol", "show", "config"}, {.take_line = take, .should_stop = should_stop});
-  if (!end && end.error().code == ErrorCode::Interrupted && !was_interrupted())
-    return fail(ErrorCode::Unwritable,
-                fmt::format("scontrol gives no answer within {} s", patience.count()));
+      run_program({"scontrol", "show", "config"},
+                  {.take_line = take, .patience = patience, .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
   if (end->code != 0) return no_answer("scontrol", *end);
   if (!size) return fail(ErrorCode::Unwritable, "scontrol show config tells no MaxArraySize");
@@ -233,6 +249,7 @@ Result<std::string> active_job(const std::string& script, const std::optional<Sl
 }
 
 Result<SlurmJob> submit(const std::vector<std::string>& words) {
+  Messages messages;
   std::optional<SlurmJob> job;
   std::string first;
   const auto take = [&](std::string_view line) {
@@ -250,13 +267,19 @@ Result<SlurmJob> submit(const std::vector<std::string>& words) {
   };
   const auto end = run_program(words, {.dropped = submit_settings,
                                        .take_line = take,
-                                       .passes_errors = true,
+                                       .take_message = std::ref(messages),
+                                       .patience = 120s,
                                        .should_stop = should_stop});
   if (job) return *job;
-  if (!end && end.error().code == ErrorCode::Interrupted)
-    return fail(ErrorCode::Unwritable,
-                "interrupted while sbatch gave no answer; squeue tells whether there is a job, and "
-                "while there is one, none is submitted beside it");
+  if (!end && is_on_path(words.front())) {
+    const bool is_interrupted = end.error().code == ErrorCode::Interrupted;
+    return fail(
+        ErrorCode::Unwritable,
+        fmt::format(
+            "{}; squeue tells whether there is a job, and while there is one, none is "
+            "submitted beside it",
+            is_interrupted ? "interrupted while sbatch gave no answer" : end.error().message));
+  }
   if (!end) return fail(end.error());
   if (end->code != 0)
     return fail(ErrorCode::Unwritable,
@@ -267,15 +290,16 @@ Result<SlurmJob> submit(const std::vector<std::string>& words) {
   return fail(ErrorCode::Unwritable,
               first.empty() ? "sbatch printed no number of a job"
                             : fmt::format("sbatch printed \"{}\" in place of the number of a job",
-                                          printable(first)));
+                                          told(first)));
 }
 
 void cancel(const SlurmJob& job) {
   std::vector<std::string> words = {"scancel"};
   if (!job.cluster.empty()) words.push_back("--clusters=" + job.cluster);
   words.push_back(job.number);
+  Messages messages;
   // What remains is run twice, to the same bits.
-  (void)run_program(words, {.dropped = cancel_settings, .passes_errors = true});
+  (void)run_program(words, {.dropped = cancel_settings, .take_message = std::ref(messages)});
 }
 
 Result<void> wait_for(const SlurmJob& job, const std::function<void(bool)>& meanwhile) {

@@ -12,7 +12,8 @@
 
 namespace pliant::cli {
 
-// Slurm, as its own commands tell it.
+// Slurm, as its own commands tell it. A command that gives no answer is ended: sbatch after 120 s,
+// the others after 30 s.
 
 /// A job, or an array of jobs.
 struct SlurmJob {
@@ -34,8 +35,8 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience);
 /// Unwritable, with Slurm's message; Interrupted.
 Result<std::string> active_job(const std::string& script, const std::optional<SlurmJob>& known);
 
-/// Submits a job by this command line of sbatch, the script last. Messages of sbatch go to stderr
-/// as they are. Errors: Unwritable: sbatch refused it.
+/// Submits a job by this command line of sbatch, the script last. Messages of sbatch go to stderr,
+/// printable, 200 lines at most. Errors: Unwritable: sbatch refused it, or gives no answer.
 Result<SlurmJob> submit(const std::vector<std::string>& words);
 
 /// Cancels a job, if that is possible.

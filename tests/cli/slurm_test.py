@@ -349,12 +349,38 @@ class Slurm(Command):
         self.assertIn("1 take, 1 done", out)
         self.assertEqual(self.runs("sbatch"), [])
 
+    def test_a_program_that_never_ends_is_ended(self):
+        self.write("bin/squeue", "#!/bin/bash\nsleep 1000 & sleep 1000\n")
+        failed = self.submit("--parts", "3", code=1)
+        self.assertIn("squeue gives no answer within 30 s", failed.stderr)
+        self.assertEqual(failed.stderr.count("\n"), 1, failed.stderr)
+        self.assertEqual(self.runs("sbatch"), [])
+        # What it leaves running, with our pipe, is not waited for.
+        self.write("bin/squeue", "#!/bin/bash\nsleep 1000 &\nexit 0\n")
+        self.write("bin/sbatch", "#!/bin/bash\nsleep 1000 &\necho 123\n")
+        self.assertIn("submitted 123: 3 parts", self.submit("--parts", "3").stdout)
+
+    def test_a_program_that_says_too_much_is_ended_and_cut_short(self):
+        self.write("bin/squeue", "#!/bin/bash\nexec yes\n")
+        failed = self.submit("--parts", "3", code=1)
+        self.assertIn("squeue writes more than 256 MiB", failed.stderr)
+        self.assertEqual(failed.stderr.count("\n"), 1, failed.stderr)
+        self.write("bin/squeue", PROGRAM)
+        self.write("bin/sbatch", "#!/bin/bash\nfor k in {1..300}; do printf '\\e]0;%s\\a\\n' $k >&2; done\n"
+                                 "head -c 100000 /dev/zero | tr '\\0' x >&2; exit 1\n")
+        failed = self.submit("--parts", "3", code=1).stderr
+        self.assertNotIn("\x1b", failed)
+        self.assertTrue(failed.startswith("\\x1b]0;1\\x07\n"), failed[:100])
+        self.assertLess(len(failed), 10_000)
+        self.assertLess(failed.count("\n"), 220)
+        self.assertIn("sbatch ended with code 1", failed)
+
     def test_what_sbatch_refuses_is_passed_on(self):
         self.write("bin/sbatch.text", "")
         self.write("bin/sbatch.errors", "sbatch: error: no\x1b[1m thanks\n")
         self.write("bin/sbatch.code", "3")
         failed = self.submit("--parts", "3", code=1)
-        self.assertTrue(failed.stderr.startswith("sbatch: error: no\x1b[1m thanks\n"), failed.stderr)
+        self.assertTrue(failed.stderr.startswith("sbatch: error: no\\x1b[1m thanks\n"), failed.stderr)
         self.assertEqual(failed.stdout, "")
         self.assertFalse(os.path.exists(self.path("s/slurm/job")))
         self.write("bin/sbatch.code", "0")
