@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -38,6 +39,7 @@ Result<void> tell_losses(const std::vector<CurveLoss>& losses, const std::string
                          bool is_strict) {
   std::vector<Error> errors;
   for (const CurveLoss& loss : losses) {
+    if (was_interrupted()) return interrupted();
     const std::string message = fmt::format("{}: {}", loss.curve, loss.message);
     if (is_strict && !loss.is_exact)
       errors.push_back(
@@ -56,6 +58,7 @@ std::string unit_name(CurveUnit unit) {
 
 void print_curves(const CurveFile& file) {
   for (const FileCurve& curve : file.curves) {
+    if (was_interrupted()) return;
     const auto& keys = curve.keys.keys;
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Key<1>& key : keys) {
@@ -83,11 +86,10 @@ void print_channels(const Scene& scene) {
 Result<RotateOrder> order_of(const std::vector<CurveMapping>& mappings, const Scene* scene) {
   if (!scene) return RotateOrder::Xyz;
   std::set<RotateOrder> orders;
-  for (const CurveMapping& mapping : mappings) {
-    for (const Surface& surface : scene->surfaces)
-      if (mapping.channel == surface.name + ".rotate")
-        orders.insert(surface.transform.rotate_order);
-  }
+  std::set<std::string_view> channels;
+  for (const CurveMapping& mapping : mappings) channels.insert(mapping.channel);
+  for (const Surface& surface : scene->surfaces)
+    if (channels.contains(surface.name + ".rotate")) orders.insert(surface.transform.rotate_order);
   if (orders.size() > 1) {
     return bad_usage(
         "--map: surfaces with several orders of rotation cannot take curves at once; import them "
@@ -100,19 +102,21 @@ Result<RotateOrder> order_of(const std::vector<CurveMapping>& mappings, const Sc
 struct Import {
   CurveFile file;
   std::vector<CurveMapping> mappings;
-
-  // The vector or the curve that a mapping takes.
-  std::string title_of(const CurveMapping& mapping) const {
-    const auto one = std::ranges::find(file.curves, mapping.source, &FileCurve::name);
-    return one != file.curves.end() && mapping.component >= 0 ? one->group : mapping.source;
-  }
 };
+
+// The vector or the curve that a mapping takes.
+std::string title_of(const CurveMapping& mapping, const CurveIndex& curves) {
+  const auto found = curves.find(mapping.source);
+  const bool is_one = !found.empty() && found.front()->name == mapping.source;
+  return is_one && mapping.component >= 0 ? found.front()->group : mapping.source;
+}
 
 // Reads the file with the mappings, given or by name.
 Result<Import> read_import(const CurveExchangeOptions& options, const Scene* scene,
                            const std::filesystem::path& root) {
   CurveReading reading;
   reading.tolerance = options.tolerance;
+  reading.should_stop = &was_interrupted;
   if (scene) {
     reading.fps = scene->fps;
     reading.frame_at_zero = scene->start;
@@ -143,9 +147,13 @@ void turn_vectors(Import& imported, const CurveExchangeOptions& options, const S
   const bool is_doubtful =
       options.up.empty() && curve_format_of(options.file) == CurveFormat::Blender;
   std::set<std::string> told;
+  std::map<std::string_view, const Surface*> surfaces;
+  if (scene)
+    for (const Surface& surface : scene->surfaces) surfaces.try_emplace(surface.name, &surface);
+  const CurveIndex curves(imported.file);
   for (const CurveMapping& mapping : imported.mappings) {
-    const std::string title = imported.title_of(mapping);
-    if (!is_of_vector(mapping, imported.file) || !told.insert(title).second) continue;
+    const std::string title = title_of(mapping, curves);
+    if (!is_of_vector(mapping, curves) || !told.insert(title).second) continue;
     const std::string surface = mapping.channel.substr(0, mapping.channel.find('.'));
     const bool is_rotation = mapping.channel == surface + ".rotate";
     if (is_doubtful && title != mapping.channel) {
@@ -157,8 +165,8 @@ void turn_vectors(Import& imported, const CurveExchangeOptions& options, const S
            true});
     }
     if (!is_z_up || !is_rotation || !scene) continue;
-    const auto found = std::ranges::find(scene->surfaces, surface, &Surface::name);
-    if (found == scene->surfaces.end() || found->transform.rotate_order == RotateOrder::Xzy)
+    const auto found = surfaces.find(surface);
+    if (found == surfaces.end() || found->second->transform.rotate_order == RotateOrder::Xzy)
       continue;
     losses.push_back({title,
                       fmt::format("turned angles of the order xyz are those of the order xzy: give "
@@ -171,14 +179,13 @@ void turn_vectors(Import& imported, const CurveExchangeOptions& options, const S
 
 // What was lost of the curves that are used.
 std::vector<CurveLoss> losses_of(const Import& imported) {
-  std::set<std::string> used;
-  for (const CurveMapping& mapping : imported.mappings) {
-    used.insert(mapping.source);
-    for (const FileCurve& curve : imported.file.curves) {
-      if (curve.name == mapping.source || curve.group == mapping.source) {
-        used.insert(curve.name);
-        used.insert(curve.group);
-      }
+  std::set<std::string> sources;
+  for (const CurveMapping& mapping : imported.mappings) sources.insert(mapping.source);
+  std::set<std::string> used = sources;
+  for (const FileCurve& curve : imported.file.curves) {
+    if (sources.contains(curve.name) || sources.contains(curve.group)) {
+      used.insert(curve.name);
+      used.insert(curve.group);
     }
   }
   std::vector<CurveLoss> losses;
@@ -235,6 +242,7 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
   if (is_listing) {
     if (!options.mappings.empty()) return bad_usage("--map: needs -o, the scene for the curves");
     print_curves(imported->file);
+    if (was_interrupted()) return interrupted();
     return tell_losses(imported->file.losses, options.file, options.is_strict);
   }
   if (imported->mappings.empty()) {
@@ -249,7 +257,7 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
   }
   turn_vectors(*imported, options, scene ? &*scene : nullptr);
   auto placed = place_curves(imported->file, imported->mappings, scene ? &*scene : nullptr,
-                             options.offset, options.tolerance);
+                             options.offset, options.tolerance, &was_interrupted);
   if (!placed) {
     Error error = placed.error();
     // Nobody typed what was mapped by name.
@@ -309,6 +317,7 @@ Result<void> export_curves(const CurveExchangeOptions& options) {
   writing.first = scene->start;
   writing.last = scene->end;
   writing.tolerance = options.tolerance;
+  writing.should_stop = &was_interrupted;
   writing.is_binary = ending_of(options.out) == ".glb";
   const auto text = write_curves(*curves, *format, writing);
   if (!text) return fail(text.error());

@@ -45,7 +45,8 @@ struct FSide {
 
 class BlenderReader : private JsonReader {
  public:
-  BlenderReader(Json& root, const CurveReading& reading) : JsonReader(root), reading_(reading) {}
+  BlenderReader(Json& root, const CurveReading& reading)
+      : JsonReader(root, reading.should_stop), reading_(reading) {}
 
   Result<CurveFile> read() {
     const Json* const format = root_.is_object() ? member(root_, "format") : nullptr;
@@ -64,7 +65,7 @@ class BlenderReader : private JsonReader {
         refuse("fps", fmt::format("is {}, but must be greater than 0", *fps));
     }
     each(root_, "curves", [&](Json& json) { read_curve(json); });
-    if (fault_) return invalid(*std::move(fault_));
+    if (fault_) return fault();
     return std::move(file_);
   }
 
@@ -324,8 +325,13 @@ class BlenderReader : private JsonReader {
     double deviation = 0;
     result.back().next = {};
     for (const bool is_first : {true, false}) {
-      Fitter<1> fitter(function, reading_.tolerance * range, 1e-4);
+      Fitter<1> fitter(function, reading_.tolerance * range, 1e-4, most_fitted,
+                       reading_.should_stop);
       const Fit<1> fit = is_first ? fitter.fit(key.frame, middle) : fitter.fit(middle, next.frame);
+      if (fit.is_stopped) {
+        end();
+        return 0;
+      }
       if (!fit.is_complete || result.size() > most_fitted) {
         refuse("keys",
                fmt::format("have an elastic that would become more than {} keys", most_fitted));
@@ -416,7 +422,11 @@ class BlenderReader : private JsonReader {
     const Abilities abilities{.has_step_next = true,
                               .has_left_values = true,
                               .has_easing = [](const Piece&) { return true; }};
-    auto held = hold(*std::move(pieces), abilities, 0, {});
+    auto held = hold(*std::move(pieces), abilities, 0, {}, reading_.should_stop);
+    if (!held && held.error().code == ErrorCode::Interrupted) {
+      end();
+      return false;
+    }
     if (!held) {
       refuse("cycles", held.error().message);
       return false;
@@ -468,7 +478,7 @@ bool has_blender_easing(const Interpolation& easing, double change) {
 }
 
 Result<CurveFile> parse_blender(std::string_view text, const CurveReading& reading) {
-  auto root = parse_json(text, "JSON");
+  auto root = parse_json(text, "JSON", reading.should_stop);
   if (!root) return fail(root.error());
   return BlenderReader(*root, reading).read();
 }

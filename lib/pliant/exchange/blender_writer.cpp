@@ -52,7 +52,8 @@ class FCurveText {
         factor_(factor),
         is_linear_(is_sloped(pieces.before) || is_sloped(pieces.after)) {}
 
-  void append_to(std::string& text) const {
+  /// A part of it, if it is stopped.
+  void append_to(std::string& text, const StopRequest& should_stop) const {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "      \"extrapolation\": \"{}\",\n", is_linear_ ? "LINEAR" : "CONSTANT");
     if (cycle_mode(pieces_.before) + cycle_mode(pieces_.after) > 0) {
@@ -64,6 +65,7 @@ class FCurveText {
     }
     text += "      \"keys\": [\n";
     for (std::size_t k = 0; k < pieces_.frames.size(); ++k) {
+      if (is_stopped(should_stop, k)) return;
       append_key(text, k);
       text += k + 1 < pieces_.frames.size() ? ",\n" : "\n";
     }
@@ -158,7 +160,8 @@ Result<CurveText> write_blender(const std::vector<ChannelCurve>& curves,
                      "\"{}\",\n",
                      is_first ? "" : ",", json_text(channel->thing), json_text(channel->attribute),
                      index, unit_word(curve.unit));
-      FCurveText(part.pieces, factor).append_to(text);
+      FCurveText(part.pieces, factor).append_to(text, writing.should_stop);
+      if (is_stopped(writing.should_stop)) return interrupted();
       text += "\n    }";
       is_first = false;
     }

@@ -17,8 +17,6 @@
 namespace pliant {
 namespace {
 
-constexpr std::size_t most_file_bytes = std::size_t{1} << 30;
-
 Result<CurveFile> parse_as(std::string_view bytes, CurveFormat format, const CurveReading& reading,
                            const ReadCurveReference& read_reference) {
   if (format != CurveFormat::Gltf && bytes.starts_with(xml::byte_order_mark))
@@ -69,7 +67,7 @@ Result<CurveFile> read_curves(const std::filesystem::path& file, const CurveRead
                             ending_of(file)),
                 file.string());
   }
-  const auto bytes = read_file(file, most_file_bytes);
+  const auto bytes = read_file(file, largest_curve_file, reading.should_stop);
   if (!bytes) return fail(bytes.error());
   const auto read = [&](const std::string& uri, std::size_t max_bytes) {
     return read_reference(uri, file, root, max_bytes);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/timeline/curve.hpp"
 
@@ -61,6 +62,7 @@ struct CurveReading {
   RotateOrder rotate_order = RotateOrder::Xyz;  ///< of the angles that quaternions become
   double tolerance = 1e-4;  ///< largest deviation where curves are converted, as a share of their
                             ///< range; > 0
+  StopRequest should_stop = {};
 };
 
 /// Returns the bytes of the file that a glTF refers to, at most `max_bytes`.
@@ -69,15 +71,18 @@ using ReadCurveReference =
 
 /// Reads the curves of a file from its bytes. `name` is the file's name in messages. Errors: the
 /// first problem, with the line or the path in the JSON; a file with too many keys
-/// (`most_file_keys`) or values. Requires: fps and tolerance positive and finite.
+/// (`most_file_keys`) or values; Interrupted. Requires: fps and tolerance positive and finite.
 Result<CurveFile> parse_curves(std::string_view bytes, CurveFormat format, const std::string& name,
                                const CurveReading& reading,
                                const ReadCurveReference& read_reference = {});
 
 /// Reads a file by its ending. What a glTF refers to must be in its own folder or, if given, in the
-/// folder `root` or below. Errors: as `parse_curves`; another ending; Unreadable.
+/// folder `root` or below. Errors: as `parse_curves`; another ending; Unreadable, also if it is
+/// larger than `largest_curve_file`.
 Result<CurveFile> read_curves(const std::filesystem::path& file, const CurveReading& reading,
                               const std::filesystem::path& root = {});
+
+inline constexpr std::size_t largest_curve_file = std::size_t{1} << 30U;  ///< [bytes]
 
 /// The most keys that a file may have.
 inline constexpr std::size_t most_file_keys = 1'000'000;
@@ -97,6 +102,7 @@ struct CurveWriting {
   double last = 1;          ///< to this one
   double tolerance = 1e-4;  ///< as in CurveReading
   bool is_binary = true;    ///< glTF: as .glb
+  StopRequest should_stop = {};
 };
 
 /// The content of a file.
@@ -106,20 +112,22 @@ struct CurveText {
 };
 
 /// Errors, naming the channel: numbers that no other program computes with; a value beyond single
-/// precision, in a glTF. Requires: fps and tolerance positive and finite; channels are unique.
+/// precision, in a glTF. Interrupted. Requires: fps and tolerance positive and finite; channels are
+/// unique.
 Result<CurveText> write_curves(const std::vector<ChannelCurve>& curves, CurveFormat format,
                                const CurveWriting& writing);
 
 /// Three curves of a file as one with three components, as keys of a vector channel are; null: the
 /// component is `constant` there. Their keys share frames, segments and lengths in a vector: curves
 /// that do not are converted, within `tolerance` of their range, and the loss is told. Errors: an
-/// inner loop, an extrapolation that differs between them and has copies: which.
+/// inner loop, an extrapolation that differs between them and has copies: which. Interrupted.
 struct JoinedCurve {
   CurveKeys<3> keys;
   std::vector<std::string> losses;
 };
 Result<JoinedCurve> join_curves(const std::array<const CurveKeys<1>*, 3>& components,
-                                const Value<3>& constant, double tolerance);
+                                const Value<3>& constant, double tolerance,
+                                const StopRequest& should_stop = {});
 
 /// One component of keys.
 CurveKeys<1> component_of(const CurveKeys<3>& keys, int component);

@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant::exchange {
@@ -49,6 +50,7 @@ struct Fit {
   double deviation = 0;     ///< the largest of any component, at many frames [unit]
   bool is_complete = true;  ///< no more cubics were needed than are allowed
   bool is_close = true;     ///< none deviates by more than the tolerance and what rounding makes
+  bool is_stopped = false;  ///< it was asked to stop: the rest means nothing
 };
 
 /// The most cubics that one interval becomes.
@@ -63,12 +65,19 @@ template <int D>
 class Fitter {
  public:
   Fitter(const SmoothFunction<D>& function, double tolerance, double shortest,
-         std::size_t most = most_fitted)
-      : function_(function), tolerance_(tolerance), shortest_(shortest), most_(most) {}
+         std::size_t most = most_fitted, const StopRequest& should_stop = {})
+      : function_(function),
+        tolerance_(tolerance),
+        shortest_(shortest),
+        most_(most),
+        should_stop_(should_stop) {}
 
   Fit<D> fit(double start, double end) {
     add(start, end, function_.value(start), function_.value(end));
-    while (!coarse_.empty() && coarse_.size() + fit_.cubics.size() < most_) {
+    for (std::size_t round = 0; !coarse_.empty() && coarse_.size() + fit_.cubics.size() < most_;
+         ++round) {
+      fit_.is_stopped = pliant::is_stopped(should_stop_, round);
+      if (fit_.is_stopped) return std::move(fit_);
       std::pop_heap(coarse_.begin(), coarse_.end());
       const FittedCubic<D> whole = coarse_.back().cubic;
       coarse_.pop_back();
@@ -157,6 +166,7 @@ class Fitter {
   double tolerance_;
   double shortest_;
   std::size_t most_;
+  StopRequest should_stop_;
   std::vector<Coarse> coarse_;  // a heap; the first deviates most
   Fit<D> fit_;
 };

@@ -56,6 +56,7 @@ class GltfCurveReader {
         frame_at_zero_ = reading_.frame_at_zero;
       const std::string prefix = are_several ? animation.name + '/' : "";
       for (const gltf::AnimationChannel& channel : animation.channels) {
+        if (is_stopped(reading_.should_stop)) return interrupted();
         if (auto read = read_channel(animation, channel, prefix); !read) return fail(read.error());
       }
     }
@@ -232,6 +233,7 @@ class GltfCurveReader {
     std::vector<RotationTrack<3>> tracks;
     Value<3> low = first, high = first, near = first;
     for (std::size_t k = 0; k + 1 < values.frames.size(); ++k) {
+      if (is_stopped(reading_.should_stop, k)) return interrupted();
       const auto angles = [&values, k, this](double frame, const Value<3>& beside) {
         return euler_near(rotation_within(values, k, frame), reading_.rotate_order, beside);
       };
@@ -249,7 +251,10 @@ class GltfCurveReader {
     };
     for (const RotationTrack<3>& track : tracks) {
       const SmoothFunction<3> function = track.function();
-      const Fit<3> fit = Fitter<3>(function, tolerance, 1.0 / 1024).fit(track.start(), track.end());
+      const Fit<3> fit =
+          Fitter<3>(function, tolerance, 1.0 / 1024, most_fitted, reading_.should_stop)
+              .fit(track.start(), track.end());
+      if (fit.is_stopped || is_stopped(reading_.should_stop)) return interrupted();
       count += fit.cubics.size();
       if (!fit.is_complete || count > most_fitted)
         return invalid(fmt::format("{} would become more than {} keys", name, most_fitted));
@@ -286,7 +291,8 @@ Result<CurveFile> parse_gltf_curves(std::string_view bytes, const CurveReading& 
                                     const ReadCurveReference& read_reference) {
   const auto container = gltf::open_container(bytes);
   if (!container) return fail(container.error());
-  const auto document = gltf::read_document(container->json, gltf::Subject::Animations);
+  const auto document =
+      gltf::read_document(container->json, gltf::Subject::Animations, reading.should_stop);
   if (!document) return fail(document.error());
   gltf::Buffers buffers(*document, container->binary, bytes.size(), read_reference);
   gltf::AccessorReader accessors(*document, buffers);

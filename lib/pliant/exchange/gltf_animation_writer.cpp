@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -152,9 +154,11 @@ class GltfCurveWriter {
            true});
     }
     for (const auto& [curve, keys] : sampled) {
+      if (is_stopped(writing_.should_stop)) return interrupted();
       if (auto added = add(*curve, keys); !added) return fail(added.error());
     }
     const std::string json = document();
+    if (is_stopped(writing_.should_stop)) return interrupted();
     result_.bytes = writing_.is_binary ? as_glb(json) : json;
     return std::move(result_);
   }
@@ -239,8 +243,10 @@ class GltfCurveWriter {
       const RotationTrack<4> track(at, frames[k], frames[k + 1], beside, steps);
       beside = track.last();
       const SmoothFunction<4> function = track.function();
-      const Fit<4> fit = Fitter<4>(function, tolerance / degrees_per_unit / 2, 1.0 / 1024)
+      const Fit<4> fit = Fitter<4>(function, tolerance / degrees_per_unit / 2, 1.0 / 1024,
+                                   most_fitted, writing_.should_stop)
                              .fit(frames[k], frames[k + 1]);
+      if (fit.is_stopped || is_stopped(writing_.should_stop)) return interrupted();
       if (!fit.is_complete || result.keys.size() + fit.cubics.size() > most_fitted) {
         return fail(ErrorCode::InvalidInput,
                     fmt::format("{}: would become more than {} keys", curve.channel, most_fitted));
@@ -260,10 +266,10 @@ class GltfCurveWriter {
 
   /// The node of a thing, or of one of its channels.
   std::size_t node_of(const std::string& name, std::optional<std::size_t> parent) {
-    for (std::size_t k = 0; k < nodes_.size(); ++k)
-      if (nodes_[k]["name"] == name) return k;
+    const auto [known, is_new] = node_numbers_.try_emplace(name, nodes_.size());
+    const std::size_t node = known->second;
+    if (!is_new) return node;
     nodes_.push_back({{"name", name}});
-    const std::size_t node = nodes_.size() - 1;
     (parent ? nodes_[*parent]["children"] : roots_).push_back(node);
     return node;
   }
@@ -370,6 +376,7 @@ class GltfCurveWriter {
   std::string bytes_;
   GltfBuffer buffer_;
   double frame_at_zero_ = 0;
+  std::unordered_map<std::string, std::size_t> node_numbers_;  // by their names
   GltfJson nodes_ = GltfJson::array();
   GltfJson roots_ = GltfJson::array();
   GltfJson channels_ = GltfJson::array();

@@ -24,7 +24,8 @@ Result<HeldChannel> held_channel(const ChannelCurve& curve, const Abilities& abi
   const auto add = [&](const Curve<1>& part, int component) -> Result<void> {
     const std::string name = curve.channel + component_suffix(component);
     auto held = hold(pieces_of(part), abilities, tolerance_of(part, writing),
-                     {writing.first, writing.last});
+                     {writing.first, writing.last}, writing.should_stop);
+    if (!held && held.error().code == ErrorCode::Interrupted) return fail(held.error());
     if (!held) {
       return fail(held.error().code, fmt::format("{}: {}", name, held.error().message));
     }

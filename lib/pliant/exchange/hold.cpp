@@ -68,8 +68,13 @@ std::optional<Error> beyond_bounds(const Pieces& pieces) {
 
 class Holder {
  public:
-  Holder(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted)
-      : pieces_(std::move(pieces)), abilities_(abilities), tolerance_(tolerance), wanted_(wanted) {}
+  Holder(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
+         const StopRequest& should_stop)
+      : pieces_(std::move(pieces)),
+        abilities_(abilities),
+        tolerance_(tolerance),
+        wanted_(wanted),
+        should_stop_(should_stop) {}
 
   Result<Held> hold() {
     for (const Piece& piece : pieces_.pieces) author_frames_.push_back(piece.start);
@@ -248,7 +253,8 @@ class Holder {
     pieces_ = std::move(result);
   }
 
-  /// Replaces each piece by the parts that `parts_of` makes of it. Errors: they are too many.
+  /// Replaces each piece by the parts that `parts_of` makes of it. Errors: they are too many;
+  /// Interrupted.
   template <class PartsOf>
   Result<void> divide(const PartsOf& parts_of) {
     Pieces result;
@@ -257,6 +263,7 @@ class Holder {
     result.frames.push_back(pieces_.frames[0]);
     result.values.push_back(pieces_.values[0]);
     for (std::size_t k = 0; k < pieces_.pieces.size(); ++k) {
+      if (is_stopped(should_stop_)) return interrupted();
       for (const Piece& part : parts_of(pieces_.pieces[k], k)) {
         result.pieces.push_back(part);
         result.frames.push_back(part.end);
@@ -460,8 +467,10 @@ class Holder {
                                      [&](double frame) { return curve.velocity(frame); },
                                      [&](double frame) { return curve.left_velocity(frame); }};
     const double shortest = std::min(1.0 / 1024, piece.length() / 1024);
-    const Fit<1> fit = Fitter<1>(function, tolerance_, shortest, most_cubics(piece.length()))
-                           .fit(piece.start, piece.end);
+    const Fit<1> fit =
+        Fitter<1>(function, tolerance_, shortest, most_cubics(piece.length()), should_stop_)
+            .fit(piece.start, piece.end);
+    if (fit.is_stopped) return {piece};
     std::vector<Piece> parts;
     for (const FittedCubic<1>& cubic : fit.cubics) {
       parts.push_back(cubic_piece(cubic.start, cubic.end, cubic.from[0], cubic.to[0],
@@ -491,15 +500,18 @@ class Holder {
   const Abilities& abilities_;
   double tolerance_;
   WantedFrames wanted_;
+  const StopRequest& should_stop_;
   std::vector<double> author_frames_;
   LossLog losses_;
 };
 
 }  // namespace
 
-Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance,
-                  WantedFrames wanted) {
-  return Holder(std::move(pieces), abilities, tolerance, wanted).hold();
+Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
+                  const StopRequest& should_stop) {
+  auto held = Holder(std::move(pieces), abilities, tolerance, wanted, should_stop).hold();
+  if (held && is_stopped(should_stop)) return interrupted();
+  return held;
 }
 
 }  // namespace pliant::exchange

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/exchange/pieces.hpp"
 
 namespace pliant::exchange {
@@ -48,7 +49,8 @@ struct WantedFrames {
 /// changes too fast for 1024 of them and for 16 a frame; jumps take `gap` frames; copies
 /// become keys, endless ones as far as frames are wanted. Errors: numbers that no other program
 /// computes with: frames beyond 1e7, keys closer than 1e-6 frames, values beyond 1e30; more than
-/// `most_pieces`.
-Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted);
+/// `most_pieces`. Interrupted.
+Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
+                  const StopRequest& should_stop = {});
 
 }  // namespace pliant::exchange

@@ -148,8 +148,12 @@ bool is_level(const Pieces& pieces) {
 /// Joins curves whose keys differ: cubics in time, which can be cut anywhere.
 class Joiner {
  public:
-  Joiner(const Components& components, const Value<3>& constant, double tolerance)
-      : components_(components), constant_(constant), tolerance_(tolerance) {}
+  Joiner(const Components& components, const Value<3>& constant, double tolerance,
+         const StopRequest& should_stop)
+      : components_(components),
+        constant_(constant),
+        tolerance_(tolerance),
+        should_stop_(should_stop) {}
 
   Result<JoinedCurve> join() {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -162,7 +166,10 @@ class Joiner {
       if (auto set = set_side(is_before); !set) return fail(set.error());
     }
     for (const double frame : frames_) result_.keys.keys.push_back({.frame = frame});
-    for (std::size_t k = 0; k < frames_.size(); ++k) set_key(k);
+    for (std::size_t k = 0; k < frames_.size(); ++k) {
+      if (is_stopped(should_stop_, k)) return interrupted();
+      set_key(k);
+    }
     std::size_t most = 0;
     for (const auto* each : components_)
       if (each) most = std::max(most, each->keys.size());
@@ -182,7 +189,7 @@ class Joiner {
     const Abilities abilities{
         .has_left_values = true, .has_long_arms = false, .has_counted_copies = true};
     auto held = hold(pieces_of(*curve), abilities, tolerance_ * (range.high[0] - range.low[0]),
-                     {keys.front().frame, keys.back().frame});
+                     {keys.front().frame, keys.back().frame}, should_stop_);
     if (!held) return fail(held.error());
     for (Loss& loss : held->losses)
       result_.losses.push_back(fmt::format(".{}: {}", "xyz"[c], loss.message));
@@ -344,6 +351,7 @@ class Joiner {
   const Components& components_;
   const Value<3>& constant_;
   double tolerance_;
+  const StopRequest& should_stop_;
   std::array<std::optional<Pieces>, 3> pieces_;
   std::array<std::size_t, 3> next_{};
   std::vector<double> frames_;
@@ -355,7 +363,8 @@ class Joiner {
 }  // namespace exchange
 
 Result<JoinedCurve> join_curves(const std::array<const CurveKeys<1>*, 3>& components,
-                                const Value<3>& constant, double tolerance) {
+                                const Value<3>& constant, double tolerance,
+                                const StopRequest& should_stop) {
   using namespace exchange;
   const CurveKeys<1>* first = nullptr;
   bool are_alike = has_same_seam(components);
@@ -372,7 +381,7 @@ Result<JoinedCurve> join_curves(const std::array<const CurveKeys<1>*, 3>& compon
     if (const auto made = Curve<3>::make(result.keys); !made) return invalid(made.error().message);
     return result;
   }
-  auto joined = Joiner(components, constant, tolerance).join();
+  auto joined = Joiner(components, constant, tolerance, should_stop).join();
   if (!joined) return fail(joined.error());
   if (const auto made = Curve<3>::make(joined->keys); !made) return invalid(made.error().message);
   return joined;

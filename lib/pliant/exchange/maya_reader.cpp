@@ -24,13 +24,14 @@ using Outer = Extrapolation<1>::Kind;
 /// The words of a text, with `;`, `{` and `}` as words of their own. Comments begin with # or //.
 class WordScanner {
  public:
-  explicit WordScanner(std::string_view text) : text_(text) {}
+  WordScanner(std::string_view text, StopPoll& stop) : text_(text), stop_(&stop) {}
 
-  /// The next word, empty at the end.
+  /// The next word, empty at the end, or if it is stopped.
   std::string_view next() {
+    constexpr std::size_t parts_of_word = 32, longest_word = std::size_t{1} << 16U;
     skip_blanks();
     word_line_ = line_;
-    if (at_ == text_.size()) return {};
+    if (at_ == text_.size() || stop_->after(parts_of_word)) return {};
     const std::size_t begin = at_;
     const char first = text_[at_];
     if (first == ';' || first == '{' || first == '}') {
@@ -42,7 +43,8 @@ class WordScanner {
       at_ = end + 1;
       return quoted;
     } else {
-      at_ = std::min(text_.find_first_of(" \t\r\n\v\f;{}", at_), text_.size());
+      const std::string_view known = text_.substr(0, std::min(at_ + longest_word, text_.size()));
+      at_ = std::min(known.find_first_of(" \t\r\n\v\f;{}", at_), known.size());
     }
     return text_.substr(begin, at_ - begin);
   }
@@ -63,7 +65,7 @@ class WordScanner {
       if (c == '\n') ++line_;
       if (c == '#' || text_.substr(at_).starts_with("//")) {
         at_ = std::min(text_.find('\n', at_), text_.size());
-      } else if (ascii_blanks.find(c) != std::string_view::npos) {
+      } else if (ascii_blanks.find(c) != std::string_view::npos && !stop_->after()) {
         ++at_;
       } else {
         return;
@@ -72,6 +74,7 @@ class WordScanner {
   }
 
   std::string_view text_;
+  StopPoll* stop_;
   std::size_t at_ = 0;
   int line_ = 1;
   int word_line_ = 1;
@@ -110,10 +113,12 @@ constexpr std::string_view maya_tangents[] = {"global", "fixed", "linear",   "fl
 class MayaReader {
  public:
   MayaReader(std::string_view text, const CurveReading& reading)
-      : words_(text), reading_(reading) {}
+      : stop_(reading.should_stop), words_(text, stop_), reading_(reading) {}
 
   Result<CurveFile> read() {
-    if (auto read = read_all(); !read) return fail(read.error());
+    auto read = read_all();
+    if (stop_.after(0)) return interrupted();
+    if (!read) return fail(read.error());
     return std::move(file_);
   }
 
@@ -479,6 +484,7 @@ class MayaReader {
 
   static constexpr double largest_number = 1e30;
 
+  StopPoll stop_;
   WordScanner words_;
   const CurveReading& reading_;
   CurveFile file_;

@@ -61,13 +61,15 @@ class MayaCurve {
     return steepest;
   }
 
-  void append_to(std::string& text, std::string_view output) const {
+  /// A part of it, if it is stopped.
+  void append_to(std::string& text, std::string_view output, const StopRequest& should_stop) const {
     fmt::format_to(std::back_inserter(text),
                    "animData {{\n  input time;\n  output {};\n  weighted {};\n  preInfinity {};\n"
                    "  postInfinity {};\n  keys {{\n",
                    output, is_weighted_ ? 1 : 0, infinity_word(pieces_.before),
                    infinity_word(pieces_.after));
-    for (std::size_t k = 0; k < pieces_.frames.size(); ++k) append_key(text, k);
+    for (std::size_t k = 0; k < pieces_.frames.size() && !is_stopped(should_stop, k); ++k)
+      append_key(text, k);
     text += "  }\n}\n";
   }
 
@@ -179,7 +181,8 @@ Result<CurveText> write_maya(const std::vector<ChannelCurve>& curves, const Curv
                          "the slope",
                          steepest, std::min(1.0, digits * steepest))});
       }
-      maya.append_to(text, output_word(curve.unit));
+      maya.append_to(text, output_word(curve.unit), writing.should_stop);
+      if (is_stopped(writing.should_stop)) return interrupted();
     }
   }
   return result;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -51,22 +53,35 @@ tl::unexpected<Error> unknown_channel(std::string_view option, const std::string
                              channel_hint(scene, path)));
 }
 
-std::optional<NamedChannel> find_channel(const Scene& scene, const std::string& path) {
-  for (NamedChannel& channel : channels_of(scene))
-    if (channel.path == path) return std::move(channel);
-  return {};
-}
-
-bool has_thing(const Scene& scene, const std::string& name) {
-  const auto is_it = [&](const auto& each) { return each.name == name; };
-  return std::ranges::any_of(scene.surfaces, is_it) || std::ranges::any_of(scene.forces, is_it) ||
-         std::ranges::any_of(scene.groups, is_it);
-}
-
 int component_of_word(std::string_view word) {
   if (word.size() != 1 || word[0] < 'x' || word[0] > 'z') return -1;
   return word[0] - 'x';
 }
+
+/// What a scene has, by its name. It must outlive this.
+class SceneNames {
+ public:
+  explicit SceneNames(const Scene& scene) {
+    for (NamedChannel& channel : channels_of(scene)) {
+      std::string path = channel.path;
+      channels_.try_emplace(std::move(path), std::move(channel));
+    }
+    for (const Surface& surface : scene.surfaces) things_.insert(surface.name);
+    for (const Force& force : scene.forces) things_.insert(force.name);
+    for (const Group& group : scene.groups) things_.insert(group.name);
+  }
+
+  /// Null: there is none.
+  const NamedChannel* channel(const std::string& path) const {
+    const auto found = channels_.find(path);
+    return found == channels_.end() ? nullptr : &found->second;
+  }
+  bool has_thing(const std::string& name) const { return things_.contains(name); }
+
+ private:
+  std::unordered_map<std::string, NamedChannel> channels_;
+  std::unordered_set<std::string> things_;
+};
 
 /// The curves of a file that go to one channel.
 struct ChannelSources {
@@ -78,14 +93,24 @@ struct ChannelSources {
 
 class Placer {
  public:
-  Placer(const CurveFile& file, const Scene* scene, double offset, double tolerance)
-      : file_(file), scene_(scene), offset_(offset), tolerance_(tolerance) {}
+  Placer(const CurveFile& file, const Scene* scene, double offset, double tolerance,
+         const StopRequest& should_stop)
+      : file_(file),
+        curves_(file),
+        scene_(scene),
+        offset_(offset),
+        tolerance_(tolerance),
+        should_stop_(should_stop) {
+    if (scene) names_.emplace(*scene);
+  }
 
   Result<PlacedCurves> place(const std::vector<CurveMapping>& mappings) {
     for (const CurveMapping& mapping : mappings) {
+      if (is_stopped(should_stop_)) return interrupted();
       if (auto added = add(mapping); !added) return fail(added.error());
     }
     for (ChannelSources& channel : channels_) {
+      if (is_stopped(should_stop_)) return interrupted();
       if (auto placed = place(channel); !placed) return fail(placed.error());
     }
     return std::move(result_);
@@ -103,13 +128,7 @@ class Placer {
 
   Result<void> add(const CurveMapping& mapping) {
     const std::string text = text_of_mapping(mapping);
-    std::vector<const FileCurve*> curves;
-    for (const FileCurve& curve : file_.curves)
-      if (curve.name == mapping.source) curves.push_back(&curve);
-    if (curves.empty()) {
-      for (const FileCurve& curve : file_.curves)
-        if (curve.group == mapping.source && curve.component >= 0) curves.push_back(&curve);
-    }
+    const std::vector<const FileCurve*> curves = curves_.find(mapping.source);
     if (curves.empty()) {
       std::vector<std::string_view> names;
       for (const FileCurve& curve : file_.curves)
@@ -134,10 +153,9 @@ class Placer {
   }
 
   ChannelSources& channel_of(const std::string& path, const std::string& text) {
-    for (ChannelSources& channel : channels_)
-      if (channel.channel == path) return channel;
-    channels_.push_back({path, text, {}, {}});
-    return channels_.back();
+    const auto [number, is_new] = channel_numbers_.try_emplace(path, channels_.size());
+    if (is_new) channels_.push_back({path, text, {}, {}});
+    return channels_[number->second];
   }
 
   /// The keys later by the offset, and their values times the factor.
@@ -170,9 +188,9 @@ class Placer {
     PlacedCurve placed{path, {}, false};
     if (scene_) {
       const auto [thing, attribute] = split_channel(path);
-      if (!has_thing(*scene_, thing) || attribute.empty())
+      if (!names_->has_thing(thing) || attribute.empty())
         return unknown_channel(fmt::format("--map {}: ", sources.text), path, *scene_);
-      if (const auto channel = find_channel(*scene_, path)) {
+      if (const NamedChannel* const channel = names_->channel(path)) {
         if (const auto* held = std::get_if<const Channel<3>*>(&channel->channel)) {
           constant = (*held)->at(scene_->start);
           if ((*held)->is_animated()) own = (*held)->curve().keys();
@@ -203,7 +221,8 @@ class Placer {
       if (!component && own) component = component_of(*own, static_cast<int>(c));
       components[c] = component ? &*component : nullptr;
     }
-    auto joined = join_curves(components, constant, tolerance_);
+    auto joined = join_curves(components, constant, tolerance_, should_stop_);
+    if (!joined && joined.error().code == ErrorCode::Interrupted) return fail(joined.error());
     if (!joined) return broken(sources.text, joined.error().message);
     for (std::string& loss : joined->losses)
       result_.losses.push_back({path, std::move(loss), false});
@@ -243,10 +262,14 @@ class Placer {
   }
 
   const CurveFile& file_;
+  CurveIndex curves_;
   const Scene* scene_;
+  std::optional<SceneNames> names_;
   double offset_;
   double tolerance_;
+  const StopRequest& should_stop_;
   std::vector<ChannelSources> channels_;
+  std::unordered_map<std::string, std::size_t> channel_numbers_;  // by their paths
   PlacedCurves result_;
 };
 
@@ -262,11 +285,12 @@ Result<std::vector<ChannelCurve>> curves_of(const Scene& scene,
   });
   if (paths.empty()) return all;
   std::vector<ChannelCurve> chosen;
+  const SceneNames names(scene);
   for (const std::string& path : paths) {
     const auto found =
         std::ranges::find_if(all, [&](const ChannelCurve& curve) { return curve.channel == path; });
     if (found == all.end()) {
-      if (find_channel(scene, path))
+      if (names.channel(path))
         return invalid(fmt::format("--channel {}: is constant, so it has no keys", path));
       return unknown_channel("--channel ", path, scene);
     }
@@ -302,66 +326,81 @@ Result<CurveMapping> parse_mapping(std::string_view text) {
 }
 
 std::vector<CurveMapping> mappings_by_name(const CurveFile& file, const Scene& scene) {
-  std::vector<CurveMapping> mappings;
+  struct Target {
+    const NamedChannel* channel;
+    bool is_own_node;
+  };
   const std::vector<NamedChannel> channels = channels_of(scene);
+  std::unordered_map<std::string, std::vector<Target>> targets;  // by the name of a group
+  for (const NamedChannel& channel : channels) {
+    const auto [thing, attribute] = split_channel(channel.path);
+    const std::string_view path = exchange::path_of_attribute(attribute);
+    // A glTF has `poke.translation`, or `poke.magnitude.translation` for a number along x.
+    targets[channel.path].push_back({&channel, false});
+    targets[path.empty() ? channel.path + ".translation" : thing + '.' + std::string(path)]
+        .push_back({&channel, path.empty()});
+  }
+  std::vector<CurveMapping> mappings;
   for (const FileCurve& curve : file.curves) {
-    for (const NamedChannel& channel : channels) {
-      const bool is_vector = std::holds_alternative<const Channel<3>*>(channel.channel);
-      const auto [thing, attribute] = split_channel(channel.path);
-      const std::string_view path = exchange::path_of_attribute(attribute);
-      // A glTF has `poke.translation`, or `poke.magnitude.translation` for a number along x.
-      const bool is_plain = curve.group == channel.path;
-      const bool is_node = !path.empty() && curve.group == thing + '.' + std::string(path);
-      const bool is_own_node = path.empty() && curve.group == channel.path + ".translation";
-      if (!is_plain && !is_node && !is_own_node) continue;
+    const auto found = targets.find(curve.group);
+    if (found == targets.end()) continue;
+    for (const auto& [channel, is_own_node] : found->second) {
+      const bool is_vector = std::holds_alternative<const Channel<3>*>(channel->channel);
       if (is_vector && curve.component < 0) continue;
       const bool is_number = !is_vector;
       if (is_number && curve.component > 0) continue;
       if (is_number && curve.component == 0 && !is_own_node) continue;
-      mappings.push_back({curve.name, channel.path, is_vector ? curve.component : -1, 1});
+      mappings.push_back({curve.name, channel->path, is_vector ? curve.component : -1, 1});
       break;
     }
   }
   return mappings;
 }
 
-bool is_of_vector(const CurveMapping& mapping, const CurveFile& file) {
-  if (mapping.component >= 0) {
-    const auto one = std::ranges::find(file.curves, mapping.source, &FileCurve::name);
-    return one != file.curves.end() && one->component == mapping.component;
+CurveIndex::CurveIndex(const CurveFile& file) {
+  for (const FileCurve& curve : file.curves) {
+    by_name_[curve.name].push_back(&curve);
+    if (curve.component >= 0) by_group_[curve.group].push_back(&curve);
   }
-  return std::ranges::none_of(
-             file.curves, [&](const FileCurve& curve) { return curve.name == mapping.source; }) &&
-         std::ranges::any_of(file.curves, [&](const FileCurve& curve) {
-           return curve.group == mapping.source && curve.component >= 0;
-         });
+}
+
+std::vector<const FileCurve*> CurveIndex::find(const std::string& source) const {
+  for (const auto* const index : {&by_name_, &by_group_})
+    if (const auto found = index->find(source); found != index->end()) return found->second;
+  return {};
+}
+
+bool is_of_vector(const CurveMapping& mapping, const CurveIndex& curves) {
+  const std::vector<const FileCurve*> found = curves.find(mapping.source);
+  if (found.empty()) return false;
+  const bool is_one = found.front()->name == mapping.source;
+  return mapping.component >= 0 ? is_one && found.front()->component == mapping.component : !is_one;
 }
 
 std::vector<CurveMapping> with_z_up(const std::vector<CurveMapping>& mappings,
                                     const CurveFile& file) {
+  const CurveIndex curves(file);
   std::vector<CurveMapping> turned;
   for (const CurveMapping& mapping : mappings) {
-    if (!is_of_vector(mapping, file)) {
+    if (!is_of_vector(mapping, curves)) {
       turned.push_back(mapping);
       continue;
     }
     const bool is_scale = split_channel(mapping.channel).second == "scale";
-    for (const FileCurve& curve : file.curves) {
-      if (mapping.component >= 0 ? curve.name != mapping.source
-                                 : curve.group != mapping.source || curve.component < 0)
-        continue;
+    for (const FileCurve* const curve : curves.find(mapping.source)) {
       constexpr int places[] = {0, 2, 1};  // of x, y and z
-      const double sign = curve.component == 1 && !is_scale ? -1 : 1;
+      const double sign = curve->component == 1 && !is_scale ? -1 : 1;
       turned.push_back(
-          {curve.name, mapping.channel, places[curve.component], sign * mapping.factor});
+          {curve->name, mapping.channel, places[curve->component], sign * mapping.factor});
     }
   }
   return turned;
 }
 
 Result<PlacedCurves> place_curves(const CurveFile& file, const std::vector<CurveMapping>& mappings,
-                                  const Scene* scene, double offset, double tolerance) {
-  return Placer(file, scene, offset, tolerance).place(mappings);
+                                  const Scene* scene, double offset, double tolerance,
+                                  const StopRequest& should_stop) {
+  return Placer(file, scene, offset, tolerance, should_stop).place(mappings);
 }
 
 }  // namespace pliant

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -31,9 +32,22 @@ Result<CurveMapping> parse_mapping(std::string_view text);
 /// files by `write_curves` do.
 std::vector<CurveMapping> mappings_by_name(const CurveFile& file, const Scene& scene);
 
+/// Finds curves of a file, which must outlive it, by their names.
+class CurveIndex {
+ public:
+  explicit CurveIndex(const CurveFile& file);
+
+  /// The curve of a name, or, if there is none, the components of a vector, in their order; empty:
+  /// neither is there.
+  std::vector<const FileCurve*> find(const std::string& source) const;
+
+ private:
+  std::unordered_map<std::string, std::vector<const FileCurve*>> by_name_, by_group_;
+};
+
 /// Whether a mapping takes a vector of the file as a whole: a group of curves, or, of mappings by
 /// name, a component for the same one.
-bool is_of_vector(const CurveMapping& mapping, const CurveFile& file);
+bool is_of_vector(const CurveMapping& mapping, const CurveIndex& curves);
 
 /// Mappings of a file in whose space z is up: of vectors that are taken as a whole (x, y, z)
 /// becomes (x, z, -y), of a scale (x, z, y). Angles are then those of the order xzy if they were
@@ -60,8 +74,10 @@ struct PlacedCurves {
 ///
 /// Errors, naming the mapping: no such curve or channel; a component of a number, or a number for a
 /// vector; twice the same; values other than 0 and 1 for a switch; those of `join_curves`.
+/// Interrupted.
 Result<PlacedCurves> place_curves(const CurveFile& file, const std::vector<CurveMapping>& mappings,
-                                  const Scene* scene, double offset, double tolerance);
+                                  const Scene* scene, double offset, double tolerance,
+                                  const StopRequest& should_stop = {});
 
 /// The text of a scene file with these curves in place of what its channels have: nothing else
 /// changes. `name`: of the file, in messages. Errors: as `parse_scene`, of the text before or
