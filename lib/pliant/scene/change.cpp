@@ -402,7 +402,8 @@ std::optional<WrongText> check_change_texts(const Scene& scene, const SceneChang
     if (auto settled = settle(things, at->path, at->slot, root, lines); !settled) return settled;
     lines.put();
     const std::string& file = *std::get<std::string*>(at->slot.place);
-    return file.empty() ? Result<void>() : check_readable(file);
+    if (file.empty()) return {};
+    return OpenFile::open(file, root).map([](const OpenFile&) {});
   };
   for (std::size_t k = 0; k < texts.size(); ++k) {
     if (is_stopped(should_stop, is_file ? 0 : k)) {
