@@ -93,7 +93,7 @@ TEST_CASE("texts of lists can be taken while they are parsed", "[mesh][json]") {
 }
 
 TEST_CASE("parsing JSON ends when asked, also within one long text", "[mesh][json]") {
-  for (const std::string text :
+  for (const std::string& text :
        {"[" + repeated("1,", 2'000'000) + "1]", "[\"" + std::string(4'000'000, 'x') + "\"]"}) {
     std::size_t calls = 0;
     const auto parse = [&](std::size_t last) {

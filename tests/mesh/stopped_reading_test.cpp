@@ -16,7 +16,7 @@
 #include "pliant/mesh/weld.hpp"
 #include "support/catch.hpp"
 #include "support/png.hpp"
-#include "support/stop_at_every_moment.hpp"
+#include "support/stopping.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -28,8 +28,8 @@ constexpr int bytes_between = 1 << 19;
 
 template <class Read>
 void stop_reading(const std::string& file, const Read& read) {
-  stop_at_every_moment([&](const StopRequest& should_stop) { return read(file, should_stop); },
-                       [] {}, std::max(1, static_cast<int>(file.size()) / bytes_between));
+  check_stops([&](const StopRequest& should_stop) { return read(file, should_stop); },
+              std::max(1, static_cast<int>(file.size()) / bytes_between));
 }
 
 constexpr int vertices = 60'000;
@@ -132,15 +132,14 @@ TEST_CASE("reading a map ends when asked", "[mesh][read_png][npy_grid][stop]") {
 
 TEST_CASE("checking, shading and welding a mesh end when asked", "[mesh][stop]") {
   const Mesh sheet = make_mesh({.columns = 300, .rows = 300});
-  stop_at_every_moment(
-      [&](const StopRequest& should_stop) { return check_mesh(sheet, should_stop); }, [] {}, 2);
+  check_stops([&](const StopRequest& should_stop) { return check_mesh(sheet, should_stop); }, 2);
   Shading shading;
   shading.smoothing.assign(sheet.face_sizes.size(), 1);
   shading.smoothing.front() = Shading::flat;
-  stop_at_every_moment(
+  check_stops(
       [&](const StopRequest& should_stop) { return shared_normals(sheet, shading, should_stop); },
-      [] {}, 10);
-  stop_at_every_moment(
+      10);
+  check_stops(
       [&](const StopRequest& should_stop) { return welded(sheet.positions, 0.01, should_stop); },
-      [] {}, 10);
+      10);
 }

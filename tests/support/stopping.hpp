@@ -22,9 +22,9 @@ int asks_of(const Work& work) {
 }
 
 /// Checks that the work asks at least so often, and that it is over soon after a stop at any of
-/// several moments, also if it is told only once.
-template <class Work>
-void check_stops(const Work& work, int least_asks) {
+/// several moments, also if it is told only once. Then `look` is called.
+template <class Work, class Look>
+void check_stops(const Work& work, int least_asks, const Look& look) {
   const int asks = asks_of(work);
   CHECK(asks >= least_asks);
   for (const int moment : std::set{1, 2, asks / 3, asks / 2, asks - 1, asks}) {
@@ -35,7 +35,13 @@ void check_stops(const Work& work, int least_asks) {
     REQUIRE_FALSE(done);
     CHECK(done.error().code == ErrorCode::Interrupted);
     CHECK(asked <= moment + 2);
+    look();
   }
+}
+
+template <class Work>
+void check_stops(const Work& work, int least_asks) {
+  check_stops(work, least_asks, [] {});
 }
 
 }  // namespace pliant::testing

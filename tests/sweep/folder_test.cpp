@@ -15,7 +15,7 @@
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
-#include "support/stop_at_every_moment.hpp"
+#include "support/stopping.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -176,29 +176,29 @@ TEST_CASE("making a sweep, opening it and writing its table end when asked", "[s
       place.request({"sheet.density=1:2", "sheet.damping=1:2", "poke.magnitude=1:2"});
   request.variation.samples = 30'000;
   const auto made = place.folder().file("over/there");
-  stop_at_every_moment(
+  check_stops(
       [&](const StopRequest& should_stop) {
         fs::remove_all(made.parent_path());
         return SweepFolder::make(made.string(), request, should_stop);
       },
-      [&] { CHECK_FALSE(fs::exists(made.parent_path())); }, 100);
+      100, [&] { CHECK_FALSE(fs::exists(made.parent_path())); });
   const auto folder = SweepFolder::make(place.sweep(), request).value();
   constexpr int quarter = 1 << 18;
-  stop_at_every_moment(
+  check_stops(
       [&](const StopRequest& should_stop) { return SweepFolder::open(place.sweep(), should_stop); },
-      [] {}, static_cast<int>(fs::file_size(place.folder().file("sweep/sweep.json"))) / quarter);
+      static_cast<int>(fs::file_size(place.folder().file("sweep/sweep.json"))) / quarter);
   const auto status = folder.status().value();
-  stop_at_every_moment(
+  check_stops(
       [&](const StopRequest& should_stop) {
         fs::remove(place.folder().file("sweep/takes.csv"));
         return folder.write_table(status, should_stop);
       },
-      [&] { CHECK_FALSE(fs::exists(place.folder().file("sweep/takes.csv"))); }, 2);
+      2, [&] { CHECK_FALSE(fs::exists(place.folder().file("sweep/takes.csv"))); });
   std::string table = "sheet.density,poke.magnitude\n";
   for (int row = 0; row < 60'000; ++row) table += "1.5,\"2\"\n";
-  stop_at_every_moment(
+  check_stops(
       [&](const StopRequest& should_stop) { return Takes::make({.table = table}, should_stop); },
-      [] {}, 2);
+      2);
 }
 
 TEST_CASE("a sweep that cannot be written leaves no folder", "[sweep]") {
