@@ -26,6 +26,20 @@ bool moves_any(const Grid& grid, std::span<const Patch> patches, const Box& box)
   return false;
 }
 
+// Whether any two of the boxes meet; if so, merges them.
+bool merge_two(const Grid& grid, std::vector<Box>& boxes) {
+  for (std::size_t a = 0; a < boxes.size(); ++a) {
+    for (std::size_t b = a + 1; b < boxes.size(); ++b) {
+      if (!meet(grid, boxes[a], boxes[b])) continue;
+      boxes[a] = box_around(grid, std::array{boxes[a], boxes[b]});
+      boxes[b] = boxes.back();
+      boxes.pop_back();
+      return true;
+    }
+  }
+  return false;
+}
+
 // Of a force that selects nothing: all is solved.
 ForceFacts facts_of_push(bool has_magnitude, bool pushes, bool is_lost) {
   ForceFacts facts;
@@ -121,7 +135,11 @@ bool falls_apart(const Selection& selection, std::vector<Box>& room) {
     const Box& box = force.deformation;
     if (!box.is_empty() && !meet(grid, met, box)) room.push_back(box);
   }
-  return merged(room, grid).size() > 1;
+  constexpr std::size_t few = 16;  // in their own memory: this is asked in each frame
+  if (room.size() > few) return merged(room, grid).size() > 1;
+  while (merge_two(grid, room)) {
+  }
+  return room.size() > 1;
 }
 
 StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan, Combine combine,
