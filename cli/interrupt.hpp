@@ -17,6 +17,10 @@ void catch_interrupts();
 /// the program.
 void own_standard_streams();
 
+/// Lets the command have as many open files as the system allows it: a .usda has three for each
+/// surface until it is complete, and many systems begin with 1024 in all.
+void raise_file_limit();
+
 bool was_interrupted();
 
 /// The error of an interrupted run followed by `kept`, "interrupted at frame 12; KEPT"; any other

@@ -98,6 +98,7 @@ int main(int count, char* arguments[]) {
   if (count > 1 && arguments[1] == keeper_request)
     return run_keeper({arguments + 2, arguments + count + 1});
   own_standard_streams();
+  raise_file_limit();
   try {
     return exit_code_after_output(run(count, arguments));
   } catch (const std::bad_alloc&) {

@@ -95,10 +95,17 @@ CornerTriples triangles_of(const Mesh& mesh, int first, int size) {
 }  // namespace
 
 CornerTriples triangulate(const Mesh& mesh) {
+  const StopRequest never;
+  StopPoll poll(never);
+  return triangulate(mesh, poll);
+}
+
+CornerTriples triangulate(const Mesh& mesh, StopPoll& poll) {
   CornerTriples triangles;
   triangles.reserve(mesh.corner_vertices.size() - 2 * mesh.face_sizes.size());
   int first = 0;
   for (const int size : mesh.face_sizes) {
+    if (poll.after(32 * static_cast<std::size_t>(size))) break;
     for (const auto& [a, b, c] : triangles_of(mesh, first, size))
       triangles.push_back({first + a, first + b, first + c});
     first += size;

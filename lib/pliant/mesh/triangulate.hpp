@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
@@ -13,5 +14,8 @@ namespace pliant {
 /// projected along its mean normal at rest, is cut at its ears, or from side to side if it has more
 /// than 32 corners. Faces that intersect themselves become a fan. Cost: O(#corners log #corners).
 std::vector<std::array<int, 3>> triangulate(const Mesh& mesh);
+
+/// The same; incomplete if `poll` says to end.
+std::vector<std::array<int, 3>> triangulate(const Mesh& mesh, StopPoll& poll);
 
 }  // namespace pliant

@@ -62,9 +62,9 @@ Result<GltfShape> make_gltf_shape(const Mesh& mesh, const StopRequest& should_st
   StopPoll poll(should_stop);
   GltfShape shape;
   const std::vector<std::uint32_t> corners = split_vertices(mesh, shape, poll);
+  const std::vector<std::array<int, 3>> triangles = triangulate(mesh, poll);
   if (poll.after(0)) return interrupted();
 
-  const std::vector<std::array<int, 3>> triangles = triangulate(mesh);
   std::vector<std::size_t> part_of(mesh.materials.names.size() + 1, 0);  // counted from 1
   std::size_t triangle = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
