@@ -103,6 +103,31 @@ def forces_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(POINT.format(k, f'center="{1000 + k} 0 0"') for k in range(n)))]
 
 
+NEAR = 'center="0 0 0" forceRadius="2" magnitude="1"'
+SELECTING = NEAR + ' deformationRadius="2"'
+# Few nodes, so that what grows with the forces is seen beside what is solved for each.
+SMALL = '<grid columns="7" rows="7" width="6" depth="6"/><material density="1" damping="1"/>'
+
+
+@kind("Text", 200)
+def acting_forces_in_info(folder, n):
+    return ["info", "--quiet", scene(folder, "".join(POINT.format(k, SELECTING) for k in range(n)), SMALL)]
+
+
+@kind("Text", 200)
+def acting_forces_of_a_group_in_info(folder, n):
+    forces = "".join(POINT.format(k, NEAR) for k in range(n))
+    return ["info", "--quiet", scene(folder, f'<group name="g" center="0 0 0" deformationRadius="2">{forces}</group>',
+                                     SMALL)]
+
+
+@kind("Text", 200)
+def groups_of_an_acting_force_in_info(folder, n):
+    return ["info", "--quiet", scene(folder, "".join(
+        f'<group name="g{k}" center="0 0 0" deformationRadius="2">{POINT.format(k, NEAR)}</group>\n'
+        for k in range(n)), SMALL)]
+
+
 @kind("Text", 300)
 def groups_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(

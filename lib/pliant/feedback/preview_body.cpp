@@ -14,6 +14,8 @@
 #include "pliant/mesh/vertex_weights.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/region/closed_boxes.hpp"
+#include "pliant/region/placed_nodes.hpp"
+#include "pliant/region/surface/level_set.hpp"
 
 namespace pliant {
 namespace {
@@ -230,6 +232,73 @@ std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
   const Vector3d middle =
       0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
   return {nearest, distance(force.kind, middle)};
+}
+
+std::vector<std::size_t> PreviewBody::selecting(const BodyInputs& inputs,
+                                                const StepPlan& plan) const {
+  if (plan.is_whole) return {};
+  if (plan.surface) return deepest_at_nodes(inputs, plan.surface->level_set);
+  // A box inside another one adds nothing.
+  std::vector<std::size_t> found;
+  const std::vector<ForceSelection>& forces = plan.selection.forces;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const Box& box = forces[k].deformation;
+    const bool is_inside = box.is_empty() || std::ranges::any_of(found, [&](std::size_t other) {
+                             return holds(plan.selection.grid, forces[other].deformation, box);
+                           });
+    if (!is_inside) found.push_back(k);
+  }
+  return found;
+}
+
+// Of each node of a level set the first force that makes it what it is there.
+std::vector<std::size_t> PreviewBody::deepest_at_nodes(const BodyInputs& inputs,
+                                                       const LevelSet& level_set) const {
+  const PlacedNodes nodes(inputs.shape ? *inputs.shape : shape_.rest, inputs.transform);
+  std::vector<double> most(level_set.nodes.size(), -std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> found(level_set.nodes.size(), 0);
+  std::vector<double> depths;
+  for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
+    if (!inputs.selectors.empty() && inputs.selectors[k] != static_cast<int>(k)) continue;
+    const SampledForce& force = inputs.forces[k];
+    depths =
+        depths_of(nodes, level_set.nodes, force.kind, force.deformation_radius, std::move(depths));
+    for (std::size_t n = 0; n < depths.size(); ++n) {
+      if (!(depths[n] > most[n])) continue;
+      most[n] = depths[n];
+      found[n] = k;
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+SingleForces::SingleForces(const BodyInputs& inputs, std::vector<std::size_t> selecting)
+    : inputs_(inputs), none_(inputs), selecting_(std::move(selecting)) {
+  none_.forces.clear();
+  none_.selectors.clear();
+}
+
+BodyInputs SingleForces::of(std::size_t k) const {
+  std::vector<std::size_t> kept = selecting_;
+  const auto place_of = [&](std::size_t force) {
+    const auto found = std::find(kept.begin(), kept.end(), force);
+    const auto place = static_cast<std::size_t>(found - kept.begin());
+    if (found == kept.end()) kept.push_back(force);
+    return place;
+  };
+  const std::size_t own = place_of(k);
+  const std::size_t selector =
+      inputs_.selectors.empty() ? own : place_of(static_cast<std::size_t>(inputs_.selectors[k]));
+  BodyInputs alone = none_;
+  for (const std::size_t force : kept) {
+    alone.selectors.push_back(static_cast<int>(alone.forces.size()));
+    alone.forces.push_back(inputs_.forces[force]);
+    if (force != k) alone.forces.back().magnitude = 0;
+  }
+  alone.selectors[own] = static_cast<int>(selector);
+  return alone;
 }
 
 bool is_plain(const Surface& surface) {

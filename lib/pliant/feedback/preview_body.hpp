@@ -35,6 +35,21 @@ struct MovingRegion {
   std::optional<RegionMotion> motion = {};  ///< null: it has none
 };
 
+/// Inputs in which one force pushes, while the region is that of all of them. Internal to feedback.
+class SingleForces {
+ public:
+  /// `selecting`: forces that together select what all do. Requires: inputs outlive it.
+  SingleForces(const BodyInputs& inputs, std::vector<std::size_t> selecting);
+
+  /// With the magnitude of force `k` only. Its forces are `selecting`, `k` and its selector.
+  BodyInputs of(std::size_t k) const;
+
+ private:
+  const BodyInputs& inputs_;
+  BodyInputs none_;  // without forces
+  std::vector<std::size_t> selecting_;
+};
+
 // A body for trying forces, for `preview_forces`; internal to feedback. It is the engine's own
 // `Body`, so that a preview and a bake agree. *Plain* means: elastic about its rest shape and
 // without tangents, so that only forces move it.
@@ -94,6 +109,10 @@ class PreviewBody {
   /// space. [length]
   std::pair<double, double> distances(const BodyInputs& inputs, const SampledForce& force) const;
 
+  /// Forces that together select what all of the inputs do, at rest: about as many as its nodes at
+  /// most, however many there are. `plan` is of these inputs.
+  std::vector<std::size_t> selecting(const BodyInputs& inputs, const StepPlan& plan) const;
+
   /// The vibrations of a settled region when it is released, for its patch with the peak: those of
   /// region or piece `k` of `plan`. `known`: how that moves, if only its load by a factor, density
   /// and damping are others than when it was found; null: it is found. Requires: it is settled
@@ -111,6 +130,8 @@ class PreviewBody {
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   Result<std::unique_ptr<Body>> make(Reference reference) const;
+  std::vector<std::size_t> deepest_at_nodes(const BodyInputs& inputs,
+                                            const LevelSet& level_set) const;
   Field displacements(const Box& box) const;
   Field displacements(std::span<const int> nodes) const;
   Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region,

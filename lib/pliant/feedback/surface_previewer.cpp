@@ -343,22 +343,21 @@ Result<void> SurfacePreviewer::tell(PreviewCase& one, const PreviewCase* before)
   if (before) preview.shares = before->preview.shares;
   const bool has_shares = preview.is_solved && preview.of != Preview::Of::Force && !before;
   if (!has_shares || depth_ == PreviewDepth::Slowest) return {};
-  return share(one, inputs, unknowns);
+  return share(one, inputs, *step);
 }
 
-// Computes the share of each force in the peak. Requires: the body is settled under all of them.
-Result<void> SurfacePreviewer::share(PreviewCase& one, const BodyInputs& inputs, int unknowns) {
+// Computes the share of each force in the peak. Requires: the body is settled under all of them;
+// `step` is its plan.
+Result<void> SurfacePreviewer::share(PreviewCase& one, const BodyInputs& inputs,
+                                     const StepPlan& step) {
   Preview& preview = one.preview;
   const std::vector<std::size_t> enabled = one.acting.enabled_at(*preview.frame);
-  if (preview.static_peak == 0 || static_cast<double>(enabled.size()) * unknowns > shared_nodes)
-    return {};
+  const double nodes = static_cast<double>(enabled.size()) * step.unknown_count();
+  if (preview.static_peak == 0 || nodes > shared_nodes) return {};
   const PreviewBody::Peak peak = body_.peak(inputs.transform);
+  const SingleForces single(inputs, body_.selecting(inputs, step));
   for (std::size_t k = 0; k < enabled.size(); ++k) {
-    BodyInputs alone = inputs;
-    for (std::size_t other = 0; other < alone.forces.size(); ++other) {
-      if (other != k) alone.forces[other].magnitude = 0;
-    }
-    if (auto settled = body_.settle(alone, true); !settled) return fail(settled.error());
+    if (auto settled = body_.settle(single.of(k), true); !settled) return fail(settled.error());
     const Vector3d way = body_.displacement(inputs.transform, peak.node);
     preview.shares.push_back({enabled[k], way.dot(peak.way) / (peak.size * peak.size)});
   }

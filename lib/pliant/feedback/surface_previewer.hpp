@@ -81,7 +81,7 @@ class SurfacePreviewer {
   std::vector<int> strongest_of(const PreviewCase& one, const std::vector<int>& frames) const;
   Result<void> look_at(PreviewCase& one, int frame);
   Result<void> tell(PreviewCase& one, const PreviewCase* before = nullptr);
-  Result<void> share(PreviewCase& one, const BodyInputs& inputs, int unknowns);
+  Result<void> share(PreviewCase& one, const BodyInputs& inputs, const StepPlan& step);
   Result<bool> begin_cycle(PreviewCase& one);
   tl::unexpected<Error> located(Error error, int frame) const;
   void report(std::string_view work, int done, int count) const;
