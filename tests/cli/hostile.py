@@ -309,6 +309,22 @@ def columns_of_a_table(folder, n):
             write(folder, "takes.csv", table)]
 
 
+def sweep_of_forces(folder, n, *options):
+    made = scene(folder, "".join(POINT.format(k, 'magnitude="1"') for k in range(n)))
+    return ["sweep", "run", made, "-o", os.path.join(folder, "out"), "--make-only", *options]
+
+
+@kind("Run", 500)
+def columns_for_as_many_forces(folder, n):
+    table = ",".join(f"f{k}.magnitude" for k in range(n)) + "\n" + ",".join(["1"] * n) + "\n"
+    return sweep_of_forces(folder, n, "--takes", write(folder, "takes.csv", table))
+
+
+@kind("Run", 500)
+def axes_for_as_many_forces(folder, n):
+    return sweep_of_forces(folder, n, *(word for k in range(n) for word in ("--vary", f"f{k}.magnitude=1")))
+
+
 class Hash(ctypes.Structure):
     _fields_ = [("low", ctypes.c_uint64), ("high", ctypes.c_uint64)]
 

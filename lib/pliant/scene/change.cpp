@@ -152,17 +152,20 @@ class NewLines {
   std::vector<SceneLine> added_;
 };
 
+// The name of a file is one from the folder of the scene's file, and leads to `root` or below.
+Result<void> settle_file(const Scene& scene, std::string& file, const std::string& root) {
+  if (file.empty()) return {};
+  file = (fs::path(scene.origin.file).parent_path() / file).string();
+  if (auto below = find_below(file, root); !below) return fail(below.error());
+  return {};
+}
+
 // What a file would do beside the value itself.
 Result<void> settle(const NamedThings& things, const ValuePath& path, const Slot& slot,
                     const std::string& root, NewLines& lines) {
-  const Scene& scene = things.scene();
   if (slot.attribute.syntax == Syntax::Path) {
-    auto& file = *std::get<std::string*>(slot.place);
-    const fs::path folder = fs::path(scene.origin.file).parent_path();
-    if (!file.empty()) {
-      file = (folder / file).string();
-      if (auto below = find_below(file, root); !below) return fail(below.error());
-    }
+    auto settled = settle_file(things.scene(), *std::get<std::string*>(slot.place), root);
+    if (!settled) return settled;
   }
   if (slot.attribute.name == "falloff") {
     if (Force* const force = things.force(path.name)) force->falloff_curve.reset();
@@ -377,34 +380,45 @@ Result<void> check_files(const Scene& changed, std::span<const SceneChange> chan
   return {};
 }
 
-std::optional<WrongText> check_change_texts(const Scene& scene, const SceneChange& change,
-                                            std::span<const std::string_view> texts,
-                                            const std::string& root,
-                                            const StopRequest& should_stop) {
-  if (texts.empty()) return {};
-  SceneChange one = change;
-  one.text = texts.front();
-  Scene changed = scene;
-  if (auto made = make_changes(changed, std::span(&one, 1), root); !made)
-    return WrongText{0, made.error()};
-  // The path is right, so that only the texts can be wrong.
-  changed = scene;
-  const NamedThings things(changed);
-  NewLines lines(changed);
-  const auto at = slot_at(things, change.path);
-  PLIANT_EXPECTS(at.has_value());
-  const bool is_file = at->slot.attribute.syntax == Syntax::Path;
-  const bool is_whole = change.kind == SceneChange::Kind::Set && at->path.part.empty();
-  const Adjust adjust(at->path, one);
-  const auto check = [&]() -> Result<void> {
-    if (!is_whole) return std::visit(AdjustCopy(adjust), at->slot.place);
-    if (auto read = adjust.read(at->slot); !read || !is_file) return read;
-    if (auto settled = settle(things, at->path, at->slot, root, lines); !settled) return settled;
-    lines.put();
-    const std::string& file = *std::get<std::string*>(at->slot.place);
-    if (file.empty()) return {};
-    return OpenFile::open(file, root).map([](const OpenFile&) {});
+ChangeCheck::ChangeCheck(const Scene& scene, std::string root)
+    : scene_(scene), things_(scene_), root_(std::move(root)) {}
+
+std::optional<WrongText> ChangeCheck::first_wrong(const SceneChange& change,
+                                                  std::span<const std::string_view> texts,
+                                                  const StopRequest& should_stop) {
+  const auto at = slot_at(things_, change.path);
+  const std::string name = at ? at->path.name : "";
+  // Other values of a thing may depend on the one that is changed; none do on one of the scene.
+  const auto checked = [&](auto* thing) {
+    const auto before = *thing;
+    auto wrong = first_wrong_at(at, change, texts, should_stop);
+    *thing = before;
+    return wrong;
   };
+  if (Surface* const surface = things_.surface(name)) return checked(surface);
+  if (Force* const force = things_.force(name)) return checked(force);
+  if (Group* const group = things_.group(name)) return checked(group);
+  return first_wrong_at(at, change, texts, should_stop);
+}
+
+std::optional<WrongText> ChangeCheck::first_wrong_at(const Reading<SlotAt>& at,
+                                                     const SceneChange& change,
+                                                     std::span<const std::string_view> texts,
+                                                     const StopRequest& should_stop) const {
+  SceneChange one = change;
+  const auto check = [&]() -> Result<void> {
+    if (!at) return refuse(at.error());
+    const Adjust adjust(at->path, one);
+    if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
+      return std::visit(AdjustCopy(adjust), at->slot.place);
+    if (auto read = adjust.read(at->slot); !read) return read;
+    if (at->slot.attribute.syntax != Syntax::Path) return {};
+    std::string& file = *std::get<std::string*>(at->slot.place);
+    if (auto settled = settle_file(scene_, file, root_); !settled) return settled;
+    if (file.empty()) return {};
+    return OpenFile::open(file, root_).map([](const OpenFile&) {});
+  };
+  const bool is_file = at && at->slot.attribute.syntax == Syntax::Path;
   for (std::size_t k = 0; k < texts.size(); ++k) {
     if (is_stopped(should_stop, is_file ? 0 : k)) {
       return WrongText{k,
@@ -417,16 +431,15 @@ std::optional<WrongText> check_change_texts(const Scene& scene, const SceneChang
   return {};
 }
 
+bool ChangeCheck::names_file(const std::string& path) const {
+  return file_at(things_, path) != nullptr;
+}
+
 bool has_some_value(const Scene& scene, std::span<const std::string> paths) {
   Scene changed = scene;  // a table gives access to what it lists
   const NamedThings things(changed);
   return std::ranges::any_of(paths,
                              [&](const std::string& path) { return has_slot(things, path); });
-}
-
-bool names_file(const Scene& scene, const std::string& path) {
-  Scene changed = scene;  // a table gives access to what it lists
-  return file_at(NamedThings(changed), path) != nullptr;
 }
 
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {

@@ -56,9 +56,6 @@ Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
 /// Whether the scene has a value of one of these paths.
 bool has_some_value(const Scene& scene, std::span<const std::string> paths);
 
-/// Whether the path is that of an attribute which names a file.
-bool names_file(const Scene& scene, const std::string& path);
-
 /// The path of the first channel whose curve or path is adjusted, by Times or Plus or in a
 /// component; null: none is.
 std::optional<std::string> first_adjusted_channel(const Scene& scene);

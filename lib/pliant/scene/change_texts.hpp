@@ -9,6 +9,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/change.hpp"
+#include "pliant/scene/value_path.hpp"
 
 namespace pliant {
 
@@ -22,11 +23,31 @@ struct WrongText {
   Error error;             ///< InvalidInput; or Interrupted, ahead of this text
 };
 
-/// Checks that `make_changes` would make a change with each of many texts, each by itself, in much
-/// less time, and `check_files`. The first text that these refuse; null: there is none.
-std::optional<WrongText> check_change_texts(const Scene& scene, const SceneChange& change,
-                                            std::span<const std::string_view> texts,
-                                            const std::string& root,
-                                            const StopRequest& should_stop);
+/// Checks many changes of one scene, each by itself, in much less time than `make_changes` and
+/// `check_files` take: the scene is copied once, and its things are found by their names.
+class ChangeCheck {
+ public:
+  ChangeCheck(const Scene& scene, std::string root);
+  ChangeCheck(const ChangeCheck&) = delete;
+  ChangeCheck& operator=(const ChangeCheck&) = delete;
+
+  /// The first text with which these would refuse the change; null: there is none.
+  std::optional<WrongText> first_wrong(const SceneChange& change,
+                                       std::span<const std::string_view> texts,
+                                       const StopRequest& should_stop);
+
+  /// Whether the path is that of an attribute which names a file.
+  bool names_file(const std::string& path) const;
+
+ private:
+  std::optional<WrongText> first_wrong_at(const xml::Reading<xml::SlotAt>& at,
+                                          const SceneChange& change,
+                                          std::span<const std::string_view> texts,
+                                          const StopRequest& should_stop) const;
+
+  Scene scene_;  // between two checks as it was, but for its own values
+  xml::NamedThings things_;
+  std::string root_;
+};
 
 }  // namespace pliant

@@ -36,8 +36,8 @@ struct SlotAt {
   Slot slot;
 };
 
-/// Finds the things of a scene, which must outlive it and keep them, by their names, for many paths
-/// of one scene.
+/// Finds the things of a scene, which must outlive it and keep them in place, by their names, for
+/// many paths of one scene.
 class NamedThings {
  public:
   explicit NamedThings(Scene& scene);
@@ -51,7 +51,7 @@ class NamedThings {
 
  private:
   template <class Thing>
-  using ByName = std::unordered_map<std::string_view, Thing*>;
+  using ByName = std::unordered_map<std::string, Thing*>;
   template <class Thing>
   static Thing* found(const ByName<Thing>& things, const std::string& name) {
     const auto thing = things.find(name);

@@ -83,12 +83,12 @@ Result<void> Sweep::check_values(const StopRequest& should_stop) const {
     if (auto there = check_files(base, takes_.set()); !there)
       return fail(told_after(there.error(), "--set "));
     if (auto known = check_table(base); !known) return known;
+    ChangeCheck check(base, settings_.root);
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       const VariedPath& varied = takes_.paths()[path];
       const std::vector<std::string_view> texts = takes_.texts_of(path, should_stop);
       if (is_stopped(should_stop)) return interrupted();
-      const auto wrong =
-          check_change_texts(base, {varied.kind, varied.path}, texts, settings_.root, should_stop);
+      const auto wrong = check.first_wrong({varied.kind, varied.path}, texts, should_stop);
       if (!wrong) continue;
       if (wrong->error.code == ErrorCode::Interrupted) return fail(wrong->error);
       return fail(told_after(wrong->error, takes_.place_of(path, texts[wrong->number]) + ": "));
@@ -116,9 +116,10 @@ Result<void> Sweep::for_each_variant(const std::function<Result<void>(const Scen
     Scene base = scene;
     if (auto made = make_changes(base, takes_.set(), settings_.root); !made) return made;
     if (auto looked = look_at(base); !looked) return looked;
+    const ChangeCheck check(base, settings_.root);
     for (std::size_t path = 0; path < takes_.paths().size(); ++path) {
       if (is_stopped(should_stop)) return interrupted();
-      if (!names_file(base, takes_.paths()[path].path)) continue;
+      if (!check.names_file(takes_.paths()[path].path)) continue;
       const auto look = [&](const Scene& changed, const Result<void>& made) {
         return made ? look_at(changed) : Result<void>();
       };
