@@ -105,6 +105,22 @@ TEST_CASE("a loop begins at a key and stands once", "[scene][keys]") {
   CHECK(*curve.loop == Loop<1>{.from = 1, .to = 9, .before = 1, .after = 2, .offset = {3}});
 }
 
+TEST_CASE("the loops of all curves of a scene copy a million keys at most", "[scene][keys]") {
+  const auto looped = [](int number, int copies) {
+    return "<point name=\"f" + std::to_string(number) + "\">\n<animate attribute=\"magnitude\">" +
+           two_keys + "<loop from=\"1\" to=\"9\" after=\"" + std::to_string(copies) +
+           "\"/></animate></point>\n";
+  };
+  std::string points;
+  int number = 0;
+  for (const int copies : {999'900, 0, 95, 5, 0, 2, 7}) points += looped(++number, copies);
+  const auto problems =
+      problems_of("<scene version=\"1\" start=\"1\" end=\"2\">" + points + "</scene>");
+  REQUIRE(problems.size() == 1);
+  CHECK_THAT(problems[0], contains_text("<loop> makes 2 copied keys, and those before it 1000000; "
+                                        "at most 1000000 are allowed in a scene"));
+}
+
 TEST_CASE("what the curve rules refuse or change is told at the line of its key", "[scene][keys]") {
   const std::string steep =
       "<key frame=\"0\" value=\"0\"/>\n<key frame=\"10\" value=\"1\" out=\"0\" "

@@ -78,6 +78,21 @@ TEST_CASE("nets, cages and driven surfaces are written", "[scene][write]") {
   CHECK(to_xml(all, "shots").value() == text);
 }
 
+TEST_CASE("a scene whose loops copy more keys than a file may is not written", "[scene][write]") {
+  const auto looped =
+      Curve<1>::make({.keys = {{.frame = 1, .value = {0}}, {.frame = 2, .value = {1}}},
+                      .loop = Loop<1>{.from = 1, .to = 2, .after = 300'000}})
+          .value();
+  Scene full = scene({sheet("s")}, {});
+  for (const char* const name : {"a", "b", "c", "d"}) {
+    CHECK(to_xml(full));
+    full.forces.push_back(poke(name, {0, 0, 0}));
+    full.forces.back().magnitude = looped;
+  }
+  CHECK_THAT(to_xml(full).error().message,
+             contains_text("1200000 copied keys; a scene file may have 1000000"));
+}
+
 TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
   Scene meshed = scene({sheet("s")}, {});
   meshed.surfaces[0].shape = Mesh{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <tuple>
@@ -62,6 +63,11 @@ class Findings {
   /// very many problems only the first are.
   bool may_compare_names() const { return problem_count_ < most_compared; }
 
+  /// Keys that the loops of all curves copy, each of which is a segment in memory.
+  static constexpr std::int64_t most_copied_keys = 1'000'000;
+  std::int64_t copied_keys() const { return copied_keys_; }
+  void count_copied_keys(std::int64_t count) { copied_keys_ += count; }
+
   /// All problems, in the order of lines, without duplicates.
   std::vector<Error> problems() const;
 
@@ -87,6 +93,7 @@ class Findings {
   std::vector<std::pair<int, std::string>> notes_;                // lines of the expanded text
   std::size_t problem_count_ = 0;
   std::size_t bytes_ = 0;  // of messages
+  std::int64_t copied_keys_ = 0;
 };
 
 }  // namespace pliant::xml

@@ -286,12 +286,20 @@ void CurveReader<D>::check_loop() {
     return findings_.add_problem(
         loop_line_, fmt::format("<loop> from=\"{}\": there is no key at that frame", loop.from));
   const auto last = std::lower_bound(first, curve_.keys.end(), loop.to, at);
-  constexpr std::int64_t most_copied_keys = 1'000'000;  // each is a segment in memory
   const std::int64_t copied = (last - first) * (std::int64_t{loop.before} + loop.after);
-  if (copied > most_copied_keys)
-    findings_.add_problem(loop_line_,
-                          fmt::format("<loop> makes {} copied keys; at most {} are allowed", copied,
-                                      most_copied_keys));
+  constexpr std::int64_t most = Findings::most_copied_keys;
+  if (copied > most)
+    return findings_.add_problem(
+        loop_line_,
+        fmt::format("<loop> makes {} copied keys; at most {} are allowed", copied, most));
+  const std::int64_t before = findings_.copied_keys();
+  findings_.count_copied_keys(copied);
+  if (before > most && copied > 0) return findings_.add_consequence();
+  if (before + copied > most && copied > 0)
+    findings_.add_problem(
+        loop_line_, fmt::format("<loop> makes {} copied keys, and those before it {}; at most {} "
+                                "are allowed in a scene",
+                                copied, before, most));
 }
 
 }  // namespace

@@ -166,6 +166,12 @@ std::optional<Scene> read_document(const Element& root, SceneFile& file) {
   return read_root(root, file);
 }
 
+Result<void> check_size(std::string_view text, const std::string& name) {
+  if (text.size() <= largest_scene_file) return {};
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);
+}
+
 }  // namespace
 
 Result<Scene> load_scene(const std::string& file, const std::string& root,
@@ -183,13 +189,11 @@ Result<Scene> parse_scene(std::string_view text, const std::string& name, const 
 Result<Scene> xml::parse_scene_of(std::string_view text, const std::string& name,
                                   const std::string& folder, const std::string& root,
                                   TextFiles texts, const StopRequest& should_stop) {
+  if (auto fits = check_size(text, name); !fits) return fail(fits.error());
   SceneFile file{.folder = folder,
                  .root = root,
                  .texts = std::move(texts),
                  .findings = Findings(name, should_stop)};
-  if (text.size() > largest_scene_file)
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("the scene is larger than {} MiB", largest_scene_file >> 20U), name);
   std::string expanded;
   const std::optional<Markup> markup = prepare(text, expanded, name, file);
   if (!markup) return fail(file.findings.to_error());

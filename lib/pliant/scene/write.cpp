@@ -1,6 +1,7 @@
 #include "pliant/scene/write.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "pliant/scene/check.hpp"
 #include "pliant/scene/curve_text.hpp"
 #include "pliant/scene/element_text.hpp"
+#include "pliant/scene/findings.hpp"
 #include "pliant/scene/key_text.hpp"
 #include "pliant/scene/markup.hpp"
 #include "pliant/scene/path.hpp"
@@ -30,6 +32,15 @@ namespace {
 // Of the work for each, see StopPoll.
 constexpr std::size_t parts_of_element = 4096, parts_of_point = 128;
 
+template <int D>
+std::int64_t copied_keys_of(const CurveKeys<D>& keys) {
+  if (!keys.loop) return 0;
+  const Loop<D>& loop = *keys.loop;
+  const auto repeated = std::ranges::count_if(
+      keys.keys, [&](const Key<D>& key) { return key.frame >= loop.from && key.frame < loop.to; });
+  return repeated * (std::int64_t{loop.before} + loop.after);
+}
+
 class SceneWriter {
  public:
   SceneWriter(std::filesystem::path folder, const StopRequest& should_stop)
@@ -37,6 +48,7 @@ class SceneWriter {
 
   void write(const Scene& scene);
 
+  std::int64_t copied_keys() const { return copied_keys_; }
   std::string text() const { return text_of(top_.children.front(), {}, {}, should_stop_) + '\n'; }
 
  private:
@@ -82,6 +94,7 @@ class SceneWriter {
   template <int D>
   void write_curve(std::string_view attribute, const Curve<D>& curve, ValueKind kind) {
     current_->children.push_back(curve_element(attribute, curve.keys(), kind, should_stop_));
+    copied_keys_ += copied_keys_of(curve.keys());
   }
 
   ElementText top_ = {};          // contains the root
@@ -89,6 +102,7 @@ class SceneWriter {
   std::filesystem::path folder_;
   const StopRequest& should_stop_;
   StopPoll poll_;
+  std::int64_t copied_keys_ = 0;
 };
 
 void SceneWriter::write_path(std::string_view attribute, const PathMotion& motion) {
@@ -389,6 +403,10 @@ Result<std::string> to_xml(const Scene& scene, const std::string& folder,
     return fail(ErrorCode::InvalidInput, *std::move(problem));
   SceneWriter writer(folder, should_stop);
   writer.write(scene);
+  if (writer.copied_keys() > Findings::most_copied_keys)
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("the loops of the scene make {} copied keys; a scene file may have {}",
+                            writer.copied_keys(), Findings::most_copied_keys));
   std::string text = writer.text();
   if (is_stopped(should_stop)) return interrupted();
   if (const auto markup = markup_of(text, scene.origin.file, should_stop); !markup)
