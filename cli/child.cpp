@@ -219,12 +219,17 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
     // poll passes over descriptors that are closed.
     pollfd ready[] = {{output.reading.get(), POLLIN, 0}, {errors.reading.get(), POLLIN, 0}};
     const bool are_closed = ready[0].fd < 0 && ready[1].fd < 0;
-    if (poll(ready, 2, are_closed ? shortest_tick : tick) > 0) {
+    const bool has_ended = (code = code_of(*id)).has_value();
+    // What it has left in the pipes is read, but not what its children go on to write.
+    const auto last = std::chrono::steady_clock::now() + std::chrono::milliseconds(tick);
+    do {
+      if (poll(ready, 2, has_ended ? 0 : are_closed ? shortest_tick : tick) <= 0) break;
       if (ready[0].revents != 0) read_some(output.reading, take_output);
       if (ready[1].revents != 0) read_some(errors.reading, take_errors);
-    } else if ((code = code_of(*id))) {
-      end.code = *code;
-    }
+      ready[0].fd = output.reading.get();
+      ready[1].fd = errors.reading.get();
+    } while (has_ended && std::chrono::steady_clock::now() < last);
+    if (has_ended) end.code = *code;
   }
   lines.finish();
   messages.finish();

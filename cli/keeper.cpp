@@ -36,6 +36,7 @@ Keeper::Keeper(Keeper&& other) noexcept
 
 void Keeper::end() {
   if (lifeline_ >= 0) close(std::exchange(lifeline_, -1));
+  if (process_ != 0) kill(process_, SIGCONT);  // if somebody has stopped it
   reap(0);
 }
 

@@ -112,7 +112,12 @@ struct MovieWriter::State {
 
   // Copies the movie from the temporary folder, which may be on another disk, to its place.
   Result<std::size_t> copy() {
-    std::ifstream movie(scratch("movie"), std::ios::binary);
+    const std::string made = scratch("movie");
+    std::error_code unknown;
+    const auto kind = std::filesystem::symlink_status(made, unknown).type();
+    if (kind != std::filesystem::file_type::regular)
+      return fail(ErrorCode::Unwritable, "ffmpeg wrote no movie");
+    std::ifstream movie(made, std::ios::binary);
     std::string piece(1 << 20, '\0');
     std::size_t size = 0;
     while (movie) {

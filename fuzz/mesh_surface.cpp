@@ -186,8 +186,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   for (int k = 0; k < 4; ++k) {
     points.row(mesh.vertex_count() + k) = lattice_point(input, spacing).transpose();
   }
-  const Binding binding(*surface, Transform{}, points);
-  require(binding.displacements(Field::Zero(surface->node_count(), 3)).isZero(0));
-  require(binding.displacements(positions - surface->rest).allFinite());
+  const auto binding = Binding::make(*surface, Transform{}, points);
+  require(binding.has_value());
+  require(binding->displacements(Field::Zero(surface->node_count(), 3)).isZero(0));
+  require(binding->displacements(positions - surface->rest).allFinite());
   return 0;
 }

@@ -374,7 +374,8 @@ TEST_CASE("numbers that another glTF refers to stay, however it does so", "[outp
     for (const char c : name) uri += fmt::format(fmt::runtime(form), static_cast<unsigned>(c));
     return uri;
   };
-  for (const std::string way : {"copy", "escaped", "escaped twice", "glb", "large glb"}) {
+  for (const std::string way :
+       {"copy", "escaped", "escaped twice", "split", "glb", "other chunk", "UTF-16", "large glb"}) {
     CAPTURE(way);
     const ScratchFolder folder;
     written(folder, "a.gltf", mesh, bump(mesh.positions, 4, 3));
@@ -383,7 +384,13 @@ TEST_CASE("numbers that another glTF refers to stay, however it does so", "[outp
     if (way == "escaped") folder.write("b.gltf", json_of(escaped(numbers, "%{:02x}")));
     if (way == "escaped twice")
       folder.write("b.gltf", json_of(escaped(escaped(numbers, "%{:02X}"), "\\u{:04x}")));
+    // As readers of URLs read it: without tabs and line ends.
+    if (way == "split")
+      folder.write("b.gltf", json_of(numbers.substr(0, 9) + "\\t" + numbers.substr(9)));
     if (way == "glb") folder.write("b.glb", in_glb(json_of(numbers)));
+    if (way == "other chunk")
+      folder.write("b.glb", in_glb("").replace(16, 4, "BIN") + json_of(numbers));
+    if (way == "UTF-16") folder.write("b.gltf", "\xFF\xFE" + std::string("{\0", 2));
     if (way == "large glb") {
       folder.write("b.Glb", in_glb(json_of(numbers)));
       std::filesystem::resize_file(folder.file("b.Glb"), std::uintmax_t{1} << 30);

@@ -89,7 +89,9 @@ TEST_CASE("each malformed document is told in one line", "[scene][markup]") {
       {root + "<point name=\"\x01\"/></scene>", 2, {"the control character 0x01"}},
       {"\xFF\xFE<\0s\0"s, 1, {"UTF-16"}},
       {"<scen/>", 1, {"the root element is <scen>", "did you mean \"scene\"?"}},
-      {"<html><body/></html>", 1, {"the root element is <html>", "allowed: scene"}},
+      {"<html><body/></html>", 1, {"the root element is not <scene>"}},
+      {"<secret/>", 1, {"the root element is not <scene>"}},
+      {"<?xml version=\"1.0\" encoding=\"secret\"?><scene/>", 1, {"the encoding is not supported"}},
   });
 }
 

@@ -80,8 +80,10 @@ class DocumentReader : private JsonReader {
       if (!written) continue;
       const auto* const number = written->get_ptr<const std::string*>();
       if (!number || !number->starts_with("2.") || (key[0] == 'm' && *number != "2.0")) {
+        const bool is_version =
+            number && number->find_first_not_of("0123456789.") == std::string::npos;
         return invalid(fmt::format("asset.{} is {}; only glTF 2.0 is supported", key,
-                                   number ? in_quotes(*number) : "not text"));
+                                   is_version ? in_quotes(*number) : "no version"));
       }
     }
     return {};

@@ -63,7 +63,19 @@ std::string plain(std::string_view text) {
     }
     return to;
   };
-  return without(without(text, "\\u", 4), "%", 2);
+  std::string result = without(without(text, "\\u", 4), "%", 2);
+  // Readers of URLs pass over these, as they are and as escapes of JSON.
+  std::erase_if(result, [](char c) { return c == '\t' || c == '\n' || c == '\r'; });
+  for (const std::string_view escape : {"\\t", "\\n", "\\r"}) {
+    std::string kept;
+    for (std::string_view rest = result; !rest.empty();) {
+      const std::size_t end = std::min(rest.find(escape), rest.size());
+      kept += rest.substr(0, end);
+      rest.remove_prefix(std::min(end + escape.size(), rest.size()));
+    }
+    result = std::move(kept);
+  }
+  return result;
 }
 
 // The JSON of a .gltf or a .glb; null: it cannot be read, or is too large.
@@ -83,7 +95,11 @@ std::optional<std::string> json_of(const fs::path& file) {
   });
   const bool is_glb = end != longest_text;
   if (!read || end > longest_text || (!is_glb && text.size() > end)) return {};
-  return text.substr(0, end);
+  text.resize(std::min(end, text.size()));
+  // Another kind of chunk comes first, or it is no UTF-8.
+  if (is_glb && text.substr(16, 4) != "JSON") return {};
+  if (text.find('\0', is_glb ? head : 0) != std::string::npos) return {};
+  return text;
 }
 
 // Drops the files that another one refers to. False: it cannot be known.

@@ -76,6 +76,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   if (axis_ == KeyAxis::Frame)
     children.push_back({"loop", [&](const Element& element) { read_loop(element); }});
   const bool all_known = read_children(animate_, children, findings_);
+  if (findings_.is_over(0)) return std::nullopt;
   if (curve_.keys.empty() && all_known)
     findings_.add_problem(
         animate_.line(),

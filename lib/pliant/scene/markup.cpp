@@ -304,9 +304,16 @@ void MarkupScanner::scan_instruction() {
   std::string upper(value);
   for (char& c : upper)
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
-  if (upper != "UTF-8" && upper != "US-ASCII" && upper != "ASCII")
-    stop(start,
-         fmt::format("the encoding {} is not supported; save the file as UTF-8", in_quotes(value)));
+  if (upper == "UTF-8" || upper == "US-ASCII" || upper == "ASCII") return;
+  // The text may be of any file: only names of encodings are told.
+  bool is_known = false;
+  for (const std::string_view family : {"UTF-", "ISO-8859-", "WINDOWS-", "LATIN", "LATIN-"}) {
+    is_known =
+        is_known || (upper.starts_with(family) &&
+                     upper.find_first_not_of("0123456789", family.size()) == std::string::npos);
+  }
+  stop(start, fmt::format("the encoding {}is not supported; save the file as UTF-8",
+                          is_known ? in_quotes(value) + ' ' : std::string()));
 }
 
 void MarkupScanner::scan_closing_tag() {

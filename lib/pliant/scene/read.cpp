@@ -158,9 +158,12 @@ std::optional<Scene> read_document(const Element& root, SceneFile& file) {
     const bool is_fragment = root.name() == "fragment";
     file.findings.add_problem(
         root.line(),
-        fmt::format("the root element is {}{}", tag(root),
-                    is_fragment ? ", which a <scene> may include, but which is none itself"
-                                : hint(root.name(), expected)));
+        is_fragment ? "the root element is <fragment>, which a <scene> may include, but which is "
+                      "none itself"
+        // The text may be of any file, and its words a secret.
+        : nearest_word(root.name(), expected)
+            ? fmt::format("the root element is {}{}", tag(root), hint(root.name(), expected))
+            : std::string("the root element is not <scene>"));
     return std::nullopt;
   }
   return read_root(root, file);

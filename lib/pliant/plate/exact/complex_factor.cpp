@@ -86,10 +86,9 @@ Result<void> ComplexFactor::factorize(const FactorPattern& pattern, const Sparse
   std::vector<std::size_t> ends(pattern.starts_.begin(), pattern.starts_.end() - 1);
   std::vector<Complex> row_values(static_cast<std::size_t>(size));
   std::vector<int> seen(static_cast<std::size_t>(size), -1), path(seen), stack(seen);
+  StopPoll poll(should_stop);
   for (int row = 0; row < size; ++row) {
-    if (row % 64 == 0 && pliant::is_stopped(should_stop)) {
-      return interrupted();
-    }
+    if (poll.after(64)) return interrupted();
     seen[row] = row;
     int top = size;
     for (int k = pattern.own_starts_[row]; k < pattern.own_starts_[row + 1]; ++k) {
@@ -109,6 +108,7 @@ Result<void> ComplexFactor::factorize(const FactorPattern& pattern, const Sparse
       const int column = stack[top];
       const Complex value = row_values[column];
       row_values[column] = {};
+      if (poll.after(ends[column] - pattern.starts_[column])) return interrupted();
       for (std::size_t k = pattern.starts_[column]; k < ends[column]; ++k) {
         Complex& target = row_values[pattern.rows_[k]];
         target = target - entries_[k] * value;

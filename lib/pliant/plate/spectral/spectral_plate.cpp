@@ -52,10 +52,11 @@ class SpectralPlate::Carver {
 SpectralPlate::SpectralPlate(const RunContext& context)
     : context_(context), kernels_(kernels_of_width(context.most_lanes)), memory_(context.memory) {}
 
+constexpr long worth_a_thread = 10'000;  // nodes
+
 // Runs tasks that write different numbers. On a small plate they are not worth a thread.
 template <class Work>
 void SpectralPlate::for_each(std::size_t count, const Work& work) {
-  constexpr long worth_a_thread = 10'000;  // nodes
   if (context_.threads && long{columns_} * rows_ > worth_a_thread) {
     context_.threads->for_each(count, std::ref(work));
   } else {
@@ -150,7 +151,11 @@ Result<void> SpectralPlate::lay_out(int columns, int rows) {
     numbers_ = NumberBlock(count.used());
   }
   // The padding of rows remains 0 from here on.
-  std::fill_n(numbers_.begin(), count.used(), 0.0);
+  constexpr std::size_t piece = std::size_t{1} << 21U;
+  for (std::size_t at = 0; at < count.used(); at += piece) {
+    if (at > 0 && context_.is_stopped()) return interrupted();
+    std::fill_n(numbers_.begin() + at, std::min(piece, count.used() - at), 0.0);
+  }
   Carver carver(numbers_.begin());
   carve(carver);
   columns_ = columns;
@@ -201,6 +206,7 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   const bool is_pinned_across = is_along_u_ ? is_pinned_v : is_pinned_u;
   const double beta = is_along_u_ ? edge_u : edge_v;
   const double delta = is_pinned_across ? 0 : is_along_u_ ? edge_v : edge_u;
+  if (long{columns_} * rows_ > worth_a_thread && context_.is_stopped()) return interrupted();
   int failed[4];
   for_each(4, [&](std::size_t k) {
     Parity& parity = parities_[k];
