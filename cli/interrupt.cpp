@@ -11,10 +11,10 @@
 namespace pliant::cli {
 namespace {
 
-std::atomic<bool> interrupted = false;
+std::atomic<bool> was_signalled = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not wait");
 
-void note_interrupt(int) { interrupted = true; }
+void note_interrupt(int) { was_signalled = true; }
 
 }  // namespace
 
@@ -48,7 +48,7 @@ void raise_file_limit() {
   setrlimit(RLIMIT_NOFILE, &limit);
 }
 
-bool was_interrupted() { return interrupted; }
+bool was_interrupted() { return was_signalled; }
 
 Error with_kept(Error error, std::string_view kept) {
   if (error.code == ErrorCode::Interrupted) error.message.append("; ").append(kept);

@@ -113,7 +113,7 @@ int keep_folder(const std::string& place) {
   const auto folder = new_folder(place);
   if (!folder) return errno;
   // If this fails, the command has ended, and so has the lifeline.
-  (void)!write(STDOUT_FILENO, folder->path.data(), folder->path.size());
+  (void)!::write(STDOUT_FILENO, folder->path.data(), folder->path.size());
   release_streams();
   remove_left_over(place);
   read_all(ChildStreams::lifeline_end);

@@ -32,14 +32,14 @@ struct Chunk {
   std::string_view content;
 };
 
-constexpr std::size_t piece_bytes = std::size_t{1} << 20U;  // checked between two asks
+constexpr std::size_t checked_bytes = std::size_t{1} << 20U;  // between two asks
 
 // The checksum of the bytes, or null: stopped.
 std::optional<std::uint32_t> checksum(std::string_view bytes, const StopRequest& should_stop) {
   auto sum = crc32_z(0, nullptr, 0);
-  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), piece_bytes))) {
+  for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), checked_bytes))) {
     if (is_stopped(should_stop)) return {};
-    sum = crc32_z(sum, zlib_bytes(bytes), std::min(bytes.size(), piece_bytes));
+    sum = crc32_z(sum, zlib_bytes(bytes), std::min(bytes.size(), checked_bytes));
   }
   return static_cast<std::uint32_t>(sum);
 }

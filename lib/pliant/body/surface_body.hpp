@@ -33,7 +33,7 @@ class SurfaceBody final : public Body {
   /// Starts at rest. Requires: settings.reference is Rest. `solver` and `context` are those of its
   /// plates; the context's profile receives the times of its steps. `factors` null: the material is
   /// even.
-  SurfaceBody(std::shared_ptr<const TriangleSurface> surface, const BodySettings& settings,
+  SurfaceBody(const std::shared_ptr<const TriangleSurface>& surface, const BodySettings& settings,
               SolverChoice solver = SolverChoice::Auto, RunContext context = {},
               std::shared_ptr<const NodeFactors> factors = {})
       : SurfaceBody(surface, PointTree(surface->rest), settings, solver, std::move(context),

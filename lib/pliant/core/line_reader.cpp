@@ -61,7 +61,7 @@ Result<LineReader> LineReader::open(const std::filesystem::path& file, std::size
 
 Result<bool> LineReader::begins_with(std::string_view text, const StopRequest& should_stop) {
   while (bytes_.size() - begin_ < text.size()) {
-    const auto more = read_more(should_stop);
+    auto more = read_more(should_stop);
     if (!more || !*more) return more;
   }
   return std::string_view(bytes_).substr(begin_).starts_with(text);
