@@ -279,7 +279,9 @@ Result<void> import_curves(const CurveExchangeOptions& options) {
   }
   if (auto told = tell_losses(losses, options.file, options.is_strict); !told) return told;
   if (is_printing) {
-    print(stdout, animate_elements(*placed));
+    const std::string elements = animate_elements(*placed, &was_interrupted);
+    if (was_interrupted()) return interrupted();
+    print(stdout, elements);
     return {};
   }
   const auto changed =

@@ -13,12 +13,15 @@
 namespace pliant {
 namespace {
 
-xml::ElementText element_of(const PlacedCurve& curve, const std::string& attribute) {
+xml::ElementText element_of(const PlacedCurve& curve, const std::string& attribute,
+                            const StopRequest& should_stop) {
   if (const auto* number = std::get_if<CurveKeys<1>>(&curve.keys)) {
     return xml::curve_element(attribute, *number,
-                              curve.is_switch ? xml::ValueKind::Boolean : xml::ValueKind::Number);
+                              curve.is_switch ? xml::ValueKind::Boolean : xml::ValueKind::Number,
+                              should_stop);
   }
-  return xml::curve_element(attribute, std::get<CurveKeys<3>>(curve.keys), xml::ValueKind::Vector);
+  return xml::curve_element(attribute, std::get<CurveKeys<3>>(curve.keys), xml::ValueKind::Vector,
+                            should_stop);
 }
 
 }  // namespace
@@ -42,14 +45,15 @@ Result<std::string> with_curves(std::string_view text, const std::string& name,
   return document->text();
 }
 
-std::string animate_elements(const PlacedCurves& curves) {
+std::string animate_elements(const PlacedCurves& curves, const StopRequest& should_stop) {
   std::string text;
   std::string last;
   for (const PlacedCurve& curve : curves.curves) {
+    if (is_stopped(should_stop)) break;
     const auto [thing, attribute] = exchange::split_channel(curve.channel);
     if (thing != last) text += fmt::format("<!-- {} -->\n", thing);
     last = thing;
-    text += xml::text_of(element_of(curve, attribute)) + '\n';
+    text += xml::text_of(element_of(curve, attribute, should_stop), {}, {}, should_stop) + '\n';
   }
   return text;
 }

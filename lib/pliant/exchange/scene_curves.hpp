@@ -86,7 +86,8 @@ Result<std::string> with_curves(std::string_view text, const std::string& name,
                                 const std::string& folder, const std::string& root,
                                 const PlacedCurves& curves, const StopRequest& should_stop = {});
 
-/// The curves as <animate> elements, those of each thing after a comment with its name.
-std::string animate_elements(const PlacedCurves& curves);
+/// The curves as <animate> elements, those of each thing after a comment with its name. Not all of
+/// them if the caller wants it to stop.
+std::string animate_elements(const PlacedCurves& curves, const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -49,7 +49,8 @@ char escaped(std::string_view digits) {
              : '\0';
 }
 
-// A text without the escapes of JSON and of URIs: digits in it are plain.
+// A text without the escapes of JSON and of URIs: digits in it are plain. It is not parsed: a
+// neighbour may be large, and when in doubt its numbers stay.
 std::string plain(std::string_view text) {
   const auto without = [](std::string_view from, std::string_view mark, std::size_t digits) {
     std::string to;
@@ -63,17 +64,17 @@ std::string plain(std::string_view text) {
     }
     return to;
   };
-  std::string result = without(without(text, "\\u", 4), "%", 2);
-  // Readers of URLs pass over these, as they are and as escapes of JSON.
-  std::erase_if(result, [](char c) { return c == '\t' || c == '\n' || c == '\r'; });
-  for (const std::string_view escape : {"\\t", "\\n", "\\r"}) {
-    std::string kept;
-    for (std::string_view rest = result; !rest.empty();) {
-      const std::size_t end = std::min(rest.find(escape), rest.size());
-      kept += rest.substr(0, end);
-      rest.remove_prefix(std::min(end + escape.size(), rest.size()));
+  const std::string unescaped = without(without(text, "\\u", 4), "%", 2);
+  // Readers of URIs pass over tabs and line ends, as they are and as escapes of JSON.
+  std::string result;
+  result.reserve(unescaped.size());
+  for (std::size_t k = 0; k < unescaped.size(); ++k) {
+    const char c = unescaped[k], next = k + 1 < unescaped.size() ? unescaped[k + 1] : '\0';
+    if (c == '\\' && (next == 't' || next == 'n' || next == 'r')) {
+      ++k;
+    } else if (c != '\t' && c != '\n' && c != '\r') {
+      result += c;
     }
-    result = std::move(kept);
   }
   return result;
 }
