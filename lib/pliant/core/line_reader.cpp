@@ -20,41 +20,27 @@ constexpr std::size_t longest_with_nul = std::size_t{1} << 18U;  // a hole of a 
 
 }  // namespace
 
-LineReader::LineReader(int descriptor, std::string name, std::size_t longest, LongLines long_lines,
-                       std::uintmax_t begin)
-    : descriptor_(descriptor),
+LineReader::LineReader(OpenDescriptor file, std::string name, std::size_t longest,
+                       LongLines long_lines, std::uintmax_t begin)
+    : file_(std::move(file)),
       name_(std::move(name)),
       longest_(longest),
       long_lines_(long_lines),
       next_(begin) {}
 
-LineReader::LineReader(LineReader&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)),
-      name_(std::move(other.name_)),
-      longest_(other.longest_),
-      long_lines_(other.long_lines_),
-      bytes_(std::move(other.bytes_)),
-      begin_(other.begin_),
-      next_(other.next_),
-      line_(other.line_) {}
-
-LineReader::~LineReader() {
-  if (descriptor_ >= 0) close(descriptor_);
-}
-
 Result<LineReader> LineReader::open(const std::filesystem::path& file, std::size_t longest,
                                     LongLines long_lines, std::uintmax_t begin,
                                     const StopRequest& should_stop) {
   if (auto readable = check_readable(file); !readable) return fail(readable.error());
-  int descriptor = -1;
+  int number = -1;
   do {  // a pipe waits for its writer
     if (is_stopped(should_stop)) return interrupted();
-    descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  } while (descriptor < 0 && errno == EINTR);
+    number = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  } while (number < 0 && errno == EINTR);
   const int error = errno;
-  LineReader reader(descriptor, file.string(), longest, long_lines, begin);
-  if (descriptor < 0) return reader.cannot_read(error);
-  if (begin > 0 && lseek(descriptor, static_cast<off_t>(begin), SEEK_SET) < 0)
+  LineReader reader(OpenDescriptor(number), file.string(), longest, long_lines, begin);
+  if (number < 0) return reader.cannot_read(error);
+  if (begin > 0 && lseek(number, static_cast<off_t>(begin), SEEK_SET) < 0)
     return reader.cannot_read(errno);
   return reader;
 }
@@ -119,7 +105,7 @@ Result<bool> LineReader::read_more(const StopRequest& should_stop) {
   ssize_t count = 0;
   do {
     if (is_stopped(should_stop)) return interrupted();
-    count = read(descriptor_, bytes_.data() + size, piece_size);
+    count = read(file_.number(), bytes_.data() + size, piece_size);
   } while (count < 0 && errno == EINTR);
   const int error = errno;
   bytes_.resize(size + static_cast<std::size_t>(std::max<ssize_t>(0, count)));

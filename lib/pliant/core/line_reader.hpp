@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "pliant/core/open_file.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 
@@ -30,10 +31,6 @@ class LineReader {
                                  LongLines long_lines = LongLines::Refuse, std::uintmax_t begin = 0,
                                  const StopRequest& should_stop = {});
 
-  LineReader(LineReader&& other) noexcept;
-  LineReader& operator=(LineReader&&) = delete;
-  ~LineReader();
-
   /// Whether the next line begins with a text, ahead of reading all of it. Errors: Unreadable;
   /// Interrupted.
   Result<bool> begins_with(std::string_view text, const StopRequest& should_stop = {});
@@ -46,13 +43,13 @@ class LineReader {
   std::uintmax_t position() const { return next_; }  ///< where the next line begins [bytes]
 
  private:
-  LineReader(int descriptor, std::string name, std::size_t longest, LongLines long_lines,
+  LineReader(OpenDescriptor file, std::string name, std::size_t longest, LongLines long_lines,
              std::uintmax_t begin);
   void count_line();
   Result<bool> read_more(const StopRequest& should_stop);
   tl::unexpected<Error> cannot_read(int error) const;
 
-  int descriptor_;
+  OpenDescriptor file_;
   std::string name_;
   std::size_t longest_;
   LongLines long_lines_;

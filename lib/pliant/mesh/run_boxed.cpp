@@ -17,6 +17,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "pliant/core/open_file.hpp"
+
 namespace pliant {
 namespace {
 
@@ -30,35 +32,11 @@ tl::unexpected<Error> not_started(const char* what, int error) {
                                                  what, std::strerror(error)));
 }
 
-// An open file, closed by the destructor. Not one of the numbered descriptors of a sandboxed
-// program.
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor = -1) : descriptor_(descriptor) {
-    if (descriptor_ < 0 || descriptor_ > boxed_program) return;
-    const int lifted = fcntl(descriptor_, F_DUPFD_CLOEXEC, boxed_program + 1);
-    const int error = errno;
-    ::close(descriptor_);
-    descriptor_ = lifted;
-    errno = error;
-  }
-  Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(descriptor_, other.descriptor_);
-    return *this;
-  }
-  ~Descriptor() { close(); }
-
-  void close() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = -1;
-  }
-  bool is_open() const { return descriptor_ >= 0; }
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
+// The same file under a number that is none of a sandboxed program's.
+OpenDescriptor lifted(OpenDescriptor file) {
+  if (!file.is_open() || file.number() > boxed_program) return file;
+  return OpenDescriptor(fcntl(file.number(), F_DUPFD_CLOEXEC, boxed_program + 1));
+}
 
 // A process that the destructor kills and reaps, so that no zombie remains.
 class Child {
@@ -93,14 +71,14 @@ class Child {
 };
 
 // The program as an in-memory file.
-Descriptor program_file(std::string_view program) {
-  Descriptor file(memfd_create("pliant", MFD_CLOEXEC));
+OpenDescriptor program_file(std::string_view program) {
+  OpenDescriptor file = lifted(OpenDescriptor(memfd_create("pliant", MFD_CLOEXEC)));
   while (file.is_open() && !program.empty()) {
-    const ssize_t count = write(file.get(), program.data(), program.size());
+    const ssize_t count = write(file.number(), program.data(), program.size());
     if (count > 0) {
       program.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
-      file.close();
+      file = OpenDescriptor();
     }
   }
   return file;
@@ -156,15 +134,15 @@ std::vector<std::string> all_arguments(const std::vector<std::string>& arguments
   return all;
 }
 
-Result<pid_t> spawn(const Descriptor& program, const std::vector<std::string>& arguments, int input,
-                    const Descriptor& answer) {
+Result<pid_t> spawn(const OpenDescriptor& program, const std::vector<std::string>& arguments,
+                    int input, const OpenDescriptor& answer) {
   std::vector<std::string> owned = arguments;
   std::vector<char*> pointers;
   for (std::string& argument : owned) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   char* no_environment[] = {nullptr};
   SpawnSettings settings;
-  int error = settings.set(program.get(), input, answer.get());
+  int error = settings.set(program.number(), input, answer.number());
   const std::string path = fmt::format("/proc/self/fd/{}", boxed_program);
   pid_t process = -1;
   if (error == 0) {
@@ -193,11 +171,11 @@ class Patience {
 };
 
 // Appends the bytes in the pipe, waiting for a tick at most. False at its end.
-bool read_some(const Descriptor& pipe, std::string& answer) {
-  pollfd waiting{pipe.get(), POLLIN, 0};
+bool read_some(const OpenDescriptor& pipe, std::string& answer) {
+  pollfd waiting{pipe.number(), POLLIN, 0};
   if (poll(&waiting, 1, static_cast<int>(tick.count() * 1000)) <= 0) return true;
   char chunk[1 << 16];
-  const ssize_t count = read(pipe.get(), chunk, sizeof chunk);
+  const ssize_t count = read(pipe.number(), chunk, sizeof chunk);
   if (count > 0) answer.append(chunk, static_cast<std::size_t>(count));
   return count > 0 || (count < 0 && (errno == EINTR || errno == EAGAIN));
 }
@@ -209,7 +187,7 @@ BoxedEnd end_of(int status, std::string answer) {
           std::move(answer)};
 }
 
-Result<BoxedEnd> wait_for(Child& child, const Descriptor& pipe, const BoxLimits& limits,
+Result<BoxedEnd> wait_for(Child& child, const OpenDescriptor& pipe, const BoxLimits& limits,
                           const StopRequest& should_stop) {
   Patience patience(limits.seconds);
   std::string answer;
@@ -235,18 +213,19 @@ Result<BoxedEnd> wait_for(Child& child, const Descriptor& pipe, const BoxLimits&
 
 Result<BoxedEnd> run_boxed(std::string_view program, const std::vector<std::string>& arguments,
                            int input, const BoxLimits& limits, const StopRequest& should_stop) {
-  const Descriptor file = program_file(program);
+  const OpenDescriptor file = program_file(program);
   if (!file.is_open()) return not_started("memfd_create", errno);
-  const Descriptor lifted_input(fcntl(input, F_DUPFD_CLOEXEC, boxed_program + 1));
+  const OpenDescriptor lifted_input(fcntl(input, F_DUPFD_CLOEXEC, boxed_program + 1));
   int ends[2];
   if (!lifted_input.is_open() || pipe2(ends, O_CLOEXEC) != 0) return not_started("pipe", errno);
-  const Descriptor from_child(ends[0]);
-  Descriptor to_parent(ends[1]);
+  const OpenDescriptor from_child = lifted(OpenDescriptor(ends[0]));
+  OpenDescriptor to_parent = lifted(OpenDescriptor(ends[1]));
   if (!from_child.is_open() || !to_parent.is_open()) return not_started("pipe", errno);
-  const auto process = spawn(file, all_arguments(arguments, limits), lifted_input.get(), to_parent);
+  const auto process =
+      spawn(file, all_arguments(arguments, limits), lifted_input.number(), to_parent);
   if (!process) return fail(process.error());
   Child child(*process);
-  to_parent.close();  // otherwise the pipe would never end
+  to_parent = OpenDescriptor();  // otherwise the pipe would never end
   return wait_for(child, from_child, limits, should_stop);
 }
 
