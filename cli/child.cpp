@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "pliant/core/open_file.hpp"
+
 namespace pliant::cli {
 namespace {
 
@@ -49,33 +51,14 @@ std::vector<char*> environment_without(std::span<const std::string_view> dropped
   return variables;
 }
 
-// One end of a pipe.
-class PipeEnd {
- public:
-  PipeEnd() = default;
-  PipeEnd(const PipeEnd&) = delete;
-  PipeEnd& operator=(const PipeEnd&) = delete;
-  ~PipeEnd() { close(); }
-
-  void hold(int descriptor) { descriptor_ = descriptor; }
-  void close() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    descriptor_ = -1;
-  }
-  int get() const { return descriptor_; }
-
- private:
-  int descriptor_ = -1;
-};
-
 struct Pipe {
-  PipeEnd reading, writing;
+  OpenDescriptor reading, writing;
 
   bool open() {
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) return false;
-    reading.hold(ends[0]);
-    writing.hold(ends[1]);
+    reading = OpenDescriptor(ends[0]);
+    writing = OpenDescriptor(ends[1]);
     return true;
   }
 };
@@ -115,14 +98,12 @@ std::optional<int> code_of(pid_t id, int options = WNOHANG) {
   return ended < 0 && errno != EINTR ? std::optional(-1) : std::nullopt;
 }
 
-// Reads what is there. False at its end.
-bool read_some(PipeEnd& end, const std::function<void(std::string_view)>& take) {
+// Reads what is there, and closes a pipe at its end.
+void read_some(OpenDescriptor& end, const std::function<void(std::string_view)>& take) {
   char bytes[1 << 14];
-  const ssize_t count = read(end.get(), bytes, sizeof bytes);
+  const ssize_t count = read(end.number(), bytes, sizeof bytes);
   if (count > 0) take({bytes, static_cast<std::size_t>(count)});
-  if (count > 0 || (count < 0 && errno == EINTR)) return true;
-  end.close();
-  return false;
+  if (count == 0 || (count < 0 && errno != EINTR)) end = OpenDescriptor();
 }
 
 }  // namespace
@@ -182,11 +163,11 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
   Pipe output, errors;
   if (!output.open() || !errors.open()) return cannot_start(words.front(), errno);
   const auto id = start_child(
-      words, {.output = output.writing.get(), .errors = errors.writing.get()}, run.dropped);
+      words, {.output = output.writing.number(), .errors = errors.writing.number()}, run.dropped);
   if (!id) return fail(id.error());
   const auto begin = std::chrono::steady_clock::now();
-  output.writing.close();  // otherwise the pipes would never end
-  errors.writing.close();
+  output.writing = OpenDescriptor();  // otherwise the pipes would never end
+  errors.writing = OpenDescriptor();
   ProgramEnd end;
   std::size_t written = 0;
   Lines lines(run.take_line), messages(run.take_message);
@@ -217,7 +198,7 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
     if (written > most_written)
       return refuse(fmt::format("writes more than {} MiB", most_written >> 20U));
     // poll passes over descriptors that are closed.
-    pollfd ready[] = {{output.reading.get(), POLLIN, 0}, {errors.reading.get(), POLLIN, 0}};
+    pollfd ready[] = {{output.reading.number(), POLLIN, 0}, {errors.reading.number(), POLLIN, 0}};
     const bool are_closed = ready[0].fd < 0 && ready[1].fd < 0;
     const bool has_ended = (code = code_of(*id)).has_value();
     // What it has left in the pipes is read, but not what its children go on to write.
@@ -226,8 +207,8 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
       if (poll(ready, 2, has_ended ? 0 : are_closed ? shortest_tick : tick) <= 0) break;
       if (ready[0].revents != 0) read_some(output.reading, take_output);
       if (ready[1].revents != 0) read_some(errors.reading, take_errors);
-      ready[0].fd = output.reading.get();
-      ready[1].fd = errors.reading.get();
+      ready[0].fd = output.reading.number();
+      ready[1].fd = errors.reading.number();
     } while (has_ended && std::chrono::steady_clock::now() < last);
     if (has_ended) end.code = *code;
   }
