@@ -219,27 +219,24 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
   Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
   Frame frame;
-  for (int number = simulation.scene().start; number <= frames.last; ++number) {
-    if (was_interrupted())
-      return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", number));
-    // Always from the scene's start, whichever frames are written.
+  const auto bake_frame = [&](int number) -> Result<void> {
+    if (was_interrupted()) return interrupted();
     auto reached = simulation.at(number, std::move(frame));
     if (!reached) return fail(reached.error());
     frame = *std::move(reached);
     if (check) {
-      if (auto advanced = check->advance(frame); !advanced) return fail(advanced.error());
+      if (auto advanced = check->advance(frame); !advanced) return advanced;
     }
-    if (number >= frames.first) {
-      if (check) check->compare(frame, output.surfaces);
-      if (measurer) measurer->add(frame);
-      auto written = write_frame(frame, options, simulation.scene(), output, summary);
-      if (!written) return fail(written.error());
-      if (regions) {
-        if (auto told = write_regions(simulation, number, *regions); !told) {
-          return fail(told.error());
-        }
-      }
-    }
+    if (number < frames.first) return {};
+    if (check) check->compare(frame, output.surfaces);
+    if (measurer) measurer->add(frame);
+    if (auto written = write_frame(frame, options, simulation.scene(), output, summary); !written)
+      return written;
+    return regions ? write_regions(simulation, number, *regions) : Result<void>();
+  };
+  // Always from the scene's start, whichever frames are written.
+  for (int number = simulation.scene().start; number <= frames.last; ++number) {
+    if (auto baked = bake_frame(number); !baked) return fail(with_frame(baked.error(), number));
     progress.advance();
   }
   if (measurer) {

@@ -111,10 +111,7 @@ Result<void> write_frames(FrameTaker& taker, MovieWriter& movie, const FrameRang
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     const auto picture = taker.take();
     const auto written = picture ? movie.write(*picture) : fail(picture.error());
-    if (!written && written.error().code == ErrorCode::Interrupted) {
-      return fail(ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame));
-    }
-    if (!written) return fail(written.error());
+    if (!written) return fail(with_frame(written.error(), frame));
     progress.advance();
   }
   return {};

@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 #include "pliant/core/result.hpp"
 
 namespace pliant {
 
-/// Called now and then during long work; true: the caller wants the work to end. Empty: never stop.
+/// Called now and then during long work; true: the caller wants the work to end, and it stays true.
+/// Empty: never stop.
 using StopRequest = std::function<bool()>;
 
 inline bool is_stopped(const StopRequest& should_stop) { return should_stop && should_stop(); }
@@ -20,6 +22,13 @@ inline bool is_stopped(const StopRequest& should_stop, std::size_t round) {
 
 /// The error of work that was stopped.
 inline tl::unexpected<Error> interrupted() { return fail(ErrorCode::Interrupted, "interrupted"); }
+
+/// `error`; an interruption is told with the frame that it came in.
+inline Error with_frame(Error error, int frame) {
+  if (error.code == ErrorCode::Interrupted)
+    error.message = "interrupted at frame " + std::to_string(frame);
+  return error;
+}
 
 /// Asks a StopRequest in a loop of small parts, once for many of them. It must outlive this.
 class StopPoll {

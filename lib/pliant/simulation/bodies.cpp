@@ -400,9 +400,8 @@ std::vector<BodyState> Bodies::states(std::vector<BodyState> reuse) const {
 
 // The error with its surface and frame.
 Error Bodies::located(Error error, const Surface& surface, int frame) const {
-  if (error.code == ErrorCode::Interrupted) {  // no surface caused it
-    return {ErrorCode::Interrupted, fmt::format("interrupted at frame {}", frame)};
-  }
+  // No surface caused an interruption.
+  if (error.code == ErrorCode::Interrupted) return with_frame(std::move(error), frame);
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
   return scene_.origin.located(std::move(error), scene_.origin.line_of(surface.name));
 }
