@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "support/catch.hpp"
-#include "support/sanitized.hpp"
+#include "support/stopping.hpp"
 #include "timeline/authoring.hpp"
 #include "timeline/reference_evaluator.hpp"
 
@@ -365,6 +365,22 @@ TEST_CASE("a curve may be asked from many threads at once", "[timeline][curve][t
     }
   }
   for (const double sum : sums) CHECK(sum == sums.front());
+}
+
+TEST_CASE("a curve of many keys can be stopped while it is made", "[timeline][curve][stopping]") {
+  CurveKeys<3> keys;
+  for (int k = 0; k < 10'000; ++k) {
+    const double value = k % 7 * (k % 3);
+    keys.keys.push_back({.frame = 1.0 * k, .value = {value, -value, 1}});
+    keys.keys.back().in.kind = keys.keys.back().out.kind = Tangent<3>::Kind::Smooth;
+  }
+  testing::check_stops(
+      [&](const StopRequest& should_stop) -> Result<void> {
+        const auto made = Curve<3>::make(keys, should_stop);
+        if (!made) return made.error().is_interruption ? interrupted() : invalid("no curve");
+        return {};
+      },
+      40);
 }
 
 TEST_CASE("a frame that is no number has no value", "[timeline][curve]") {

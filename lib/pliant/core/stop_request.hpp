@@ -8,8 +8,7 @@
 
 namespace pliant {
 
-/// Called now and then during long work; true: the caller wants the work to end, and it stays true.
-/// Empty: never stop.
+/// Called now and then during long work; true: the caller wants the work to end. Empty: never stop.
 using StopRequest = std::function<bool()>;
 
 inline bool is_stopped(const StopRequest& should_stop) { return should_stop && should_stop(); }

@@ -130,7 +130,8 @@ Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
     return draft_.refuse(fmt::format("{} has {}, so its keys cannot have {}", spot.path,
                                      D == 3 ? "single numbers" : "vectors of three numbers",
                                      D == 3 ? "vectors" : "single numbers"));
-  const auto curve = Curve<D>::make(keys);
+  const auto curve = Curve<D>::make(keys, draft_.should_stop());
+  if (!curve && curve.error().is_interruption) return interrupted();
   if (!curve) return draft_.refuse(fmt::format("{}: {}", spot.path, curve.error().message));
   if (on_path(spot)) return curve_of(spot).map([](const auto&) {});
   if (const auto old = animated(spot)) {

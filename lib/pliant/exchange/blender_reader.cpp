@@ -246,16 +246,25 @@ class BlenderReader : private JsonReader {
     }
     if (joined > 0) lose(fmt::format("{} frames have several keys: they became jumps", joined));
     set_outside(keys, is_linear);
-    if (const auto checked = Curve<1>::make(keys); !checked)
-      return refuse("keys", fmt::format("are not a curve: {}", checked.error().message));
+    if (!is_curve(keys)) return;
     replace_turned_elastics(keys);
     if (fault_) return;
     const bool has_copies = keys.keys.size() > 1;
     if (has_copies && !add_cycles(keys, before, after)) return;
-    if (const auto checked = Curve<1>::make(keys); !checked)
-      return refuse("keys", fmt::format("are not a curve: {}", checked.error().message));
+    if (!is_curve(keys)) return;
     if (!count_keys(keys.keys.size() - std::min(keys.keys.size(), keys_.size()))) return;
     file_.curves.push_back(std::move(curve));
+  }
+
+  /// False: a fault.
+  bool is_curve(const CurveKeys<1>& keys) {
+    const auto made = Curve<1>::make(keys, reading_.should_stop);
+    if (made) return true;
+    if (made.error().is_interruption)
+      end();
+    else
+      refuse("keys", fmt::format("are not a curve: {}", made.error().message));
+    return false;
   }
 
   /// Source: fcurve_eval_keyframes_extrapolate, fcurve.c.

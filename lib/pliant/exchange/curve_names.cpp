@@ -32,4 +32,10 @@ std::pair<std::string, std::string> split_channel(const std::string& channel) {
   return {channel.substr(0, dot), channel.substr(dot + 1)};
 }
 
+Error error_of(const CurveError& error, const std::string& name, int line) {
+  if (error.is_interruption) return interrupted().value();
+  return {.message = name.empty() ? error.message : fmt::format("{}: {}", name, error.message),
+          .line = line};
+}
+
 }  // namespace pliant::exchange

@@ -23,6 +23,9 @@ std::string component_suffix(int component);
 /// gets a number: `Cube.location#2`.
 void name_curve(FileCurve& curve, CurveNames& names);
 
+/// Why keys are no curve, about `name` unless it is empty; Interrupted.
+Error error_of(const CurveError& error, const std::string& name, int line = 0);
+
 /// Whether copies show a jump where they meet, on whose frame programs differ.
 bool jumps_at_seam(const CurveKeys<1>& keys);
 

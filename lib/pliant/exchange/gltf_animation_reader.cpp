@@ -167,8 +167,8 @@ class GltfCurveReader {
     name_curve(curve, names_);
     if (file_.curves.size() == most_curves)
       return invalid(fmt::format("the file has more than {} curves", most_curves));
-    if (const auto checked = Curve<1>::make(curve.keys); !checked)
-      return invalid(fmt::format("{}: {}", curve.name, checked.error().message));
+    if (const auto made = Curve<1>::make(curve.keys, reading_.should_stop); !made)
+      return fail(error_of(made.error(), curve.name));
     file_.curves.push_back(std::move(curve));
     return {};
   }

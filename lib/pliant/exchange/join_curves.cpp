@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/exchange/curve_file.hpp"
+#include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/hold.hpp"
 
 namespace pliant {
@@ -182,8 +182,8 @@ class Joiner {
 
  private:
   Result<void> hold_component(std::size_t c) {
-    const auto curve = Curve<1>::make(*components_[c]);
-    if (!curve) return invalid(curve.error().message);
+    const auto curve = Curve<1>::make(*components_[c], should_stop_);
+    if (!curve) return fail(error_of(curve.error(), ""));
     const auto& keys = curve->keys().keys;
     const ValueRange<1> range = curve->range(keys.front().frame, keys.back().frame);
     const Abilities abilities{
@@ -378,12 +378,14 @@ Result<JoinedCurve> join_curves(const std::array<const CurveKeys<1>*, 3>& compon
   if (!first) return invalid("a vector needs a curve of at least one component");
   if (are_alike) {
     JoinedCurve result{joined_alike(components, constant), {}};
-    if (const auto made = Curve<3>::make(result.keys); !made) return invalid(made.error().message);
+    if (const auto made = Curve<3>::make(result.keys, should_stop); !made)
+      return fail(error_of(made.error(), ""));
     return result;
   }
   auto joined = Joiner(components, constant, tolerance, should_stop).join();
   if (!joined) return fail(joined.error());
-  if (const auto made = Curve<3>::make(joined->keys); !made) return invalid(made.error().message);
+  if (const auto made = Curve<3>::make(joined->keys, should_stop); !made)
+    return fail(error_of(made.error(), ""));
   return joined;
 }
 

@@ -444,11 +444,10 @@ class MayaReader {
     if (head.is_weighted) curve.keys.overshoot = Overshoot::KeepStart;
     if (head.output == "angular") curve.unit = CurveUnit::Degrees;
     if (head.output == "linear") curve.unit = CurveUnit::Length;
-    const auto checked = Curve<1>::make(curve.keys);
-    if (!checked) {
-      const std::size_t key = checked.error().key;
-      return invalid(fmt::format("{}: {}", curve.name, checked.error().message),
-                     key < written.size() ? written[key].line : words_.line());
+    if (const auto made = Curve<1>::make(curve.keys, reading_.should_stop); !made) {
+      const std::size_t key = made.error().key;
+      return fail(error_of(made.error(), curve.name,
+                           key < written.size() ? written[key].line : words_.line()));
     }
     open_seam(curve.keys);
     if (jumps_at_seam(curve.keys))

@@ -142,6 +142,7 @@ class Placer {
     ChannelSources& channel = channel_of(mapping.channel, text);
     for (const FileCurve* curve : curves) {
       auto keys = changed(*curve, mapping.factor);
+      if (!keys && keys.error().code == ErrorCode::Interrupted) return fail(keys.error());
       if (!keys) return broken(text, keys.error().message);
       const int component = is_group ? curve->component : mapping.component;
       auto& place =
@@ -160,8 +161,8 @@ class Placer {
 
   /// The keys later by the offset, and their values times the factor.
   Result<CurveKeys<1>> changed(const FileCurve& from, double factor) const {
-    auto curve = Curve<1>::make(from.keys);
-    if (!curve) return invalid(curve.error().message);
+    auto curve = Curve<1>::make(from.keys, should_stop_);
+    if (!curve) return fail(exchange::error_of(curve.error(), ""));
     if (factor != 1) {
       if (factor == 0) return invalid("the factor is 0");
       auto scaled = scale(*curve, Scaling<1>{.value_factor = {factor}});

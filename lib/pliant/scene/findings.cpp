@@ -40,11 +40,13 @@ void Findings::add_problem(ScenePlace place, std::string message) {
 bool Findings::is_full() const { return problems_.size() >= most_listed || bytes_ >= most_bytes; }
 
 bool Findings::is_over(std::size_t parts) {
-  if (!is_stopped_ && poll_.after(parts)) {
-    is_stopped_ = true;
-    ++problem_count_;
-  }
+  if (!is_stopped_ && poll_.after(parts)) stop();
   return is_over();
+}
+
+void Findings::stop() {
+  is_stopped_ = true;
+  ++problem_count_;
 }
 
 void Findings::add_note(int line, std::string message) {

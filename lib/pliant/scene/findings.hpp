@@ -56,6 +56,7 @@ class Findings {
   bool is_over(std::size_t parts);
   /// As `is_over`, as far as it is known.
   bool is_over() const { return is_stopped_ || is_full(); }
+  void stop();                                     ///< the work on a part was stopped
   bool is_stopped() const { return is_stopped_; }  ///< the caller wants it; counts as a problem
   const StopRequest& should_stop() const { return should_stop_; }
 

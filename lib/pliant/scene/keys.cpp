@@ -85,10 +85,15 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   if (findings_.problem_count() == problems_before) check_loop();
   if (findings_.problem_count() != problems_before) return std::nullopt;
 
-  tl::expected<Curve<D>, CurveError> curve = Curve<D>::make(std::move(curve_));
+  tl::expected<Curve<D>, CurveError> curve =
+      Curve<D>::make(std::move(curve_), findings_.should_stop());
   const auto line_of = [&](std::size_t key) {
     return key < key_lines_.size() ? key_lines_[key] : animate_.line();
   };
+  if (!curve && curve.error().is_interruption) {
+    findings_.stop();
+    return std::nullopt;
+  }
   if (!curve) {
     findings_.add_problem(line_of(curve.error().key),
                           fmt::format("{}: {}", channel_, curve.error().message));

@@ -26,22 +26,33 @@ constexpr double largest_rate = 1e305;
 // and so rounded to a few of the least numbers.
 constexpr double shortest_bent = 0x1p-900;
 
+tl::unexpected<CurveError> interruption() {
+  return tl::unexpected(CurveError{.message = "interrupted", .is_interruption = true});
+}
+
 /// The subject of a note. Copies of a key by the loop repeat its notes; only one of each is kept.
 enum class Subject { Left, InTangent, OutTangent, InOvershoot, OutOvershoot, Count };
 
 template <int D>
 class Compiler {
  public:
-  Compiler(const CurveKeys<D>& author, WrittenKeys<D> written)
+  Compiler(const CurveKeys<D>& author, WrittenKeys<D> written, const StopRequest& should_stop)
       : author_(author),
         written_(std::move(written)),
+        should_stop_(should_stop),
         noted_(author.keys.size()),
         notes_(std::move(written_.notes)) {}
 
   tl::expected<Compiled<D>, CurveError> compile() {
-    find_slopes();
+    for (int c = 0; c < D; ++c) {
+      if (!find_slopes(c) || is_stopped(should_stop_)) return interruption();
+    }
     add_keys();
-    for (std::size_t k = 0; k + 1 < keys().size(); ++k) add_segment(k);
+    track().segments.reserve(keys().size() - 1);
+    for (std::size_t k = 0; k + 1 < keys().size(); ++k) {
+      if (is_stopped(should_stop_, k)) return interruption();
+      add_segment(k);
+    }
     note_ends();
     if (error_) return tl::unexpected(*error_);
     compiled_.curve.before = outside(author_.before, true);
@@ -55,32 +66,34 @@ class Compiler {
  private:
   using Kind = typename Segment<D>::Kind;
 
-  const std::vector<Key<D>>& keys() const { return written_.keys; }
+  const std::vector<Key<D>>& keys() const { return written_.keys_of(author_); }
   Track<D>& track() { return compiled_.curve.track; }
 
   void note(std::size_t key, Subject subject, std::string message) {
-    const std::size_t origin = written_.origin[key];
+    const std::size_t origin = written_.origin_of(key);
     bool& is_noted = noted_[origin][static_cast<std::size_t>(subject)];
     if (!std::exchange(is_noted, true)) notes_.push_back({origin, std::move(message)});
   }
 
   void fail(std::size_t key, std::string message) {
-    if (!error_) error_ = CurveError{written_.origin[key], std::move(message)};
+    if (!error_) error_ = CurveError{written_.origin_of(key), std::move(message)};
   }
 
-  void find_slopes() {
+  bool find_slopes(int c) {  // false: it is stopped
     in_.resize(keys().size());
     out_.resize(keys().size());
-    for (int c = 0; c < D; ++c) {
-      const Slopes slopes = tangent_slopes(keys(), author_.before, author_.after, c);
-      for (std::size_t k = 0; k < keys().size(); ++k) {
-        in_[k][c] = slopes.in[k];
-        out_[k][c] = slopes.out[k];
-      }
+    const Slopes slopes = tangent_slopes(keys(), author_.before, author_.after, c, should_stop_);
+    for (std::size_t k = 0; k < keys().size(); ++k) {
+      in_[k][c] = slopes.in[k];
+      out_[k][c] = slopes.out[k];
     }
+    return !slopes.is_stopped;
   }
 
   void add_keys() {
+    track().frames.reserve(keys().size());
+    track().values.reserve(keys().size());
+    track().arrivals.reserve(keys().size());
     for (std::size_t k = 0; k < keys().size(); ++k) {
       const Key<D>& key = keys()[k];
       track().frames.push_back(key.frame);
@@ -308,6 +321,7 @@ class Compiler {
 
   const CurveKeys<D>& author_;
   WrittenKeys<D> written_;
+  const StopRequest& should_stop_;
   std::vector<std::array<bool, static_cast<std::size_t>(Subject::Count)>> noted_;
   std::vector<CurveNote> notes_;
   std::optional<CurveError> error_;
@@ -319,14 +333,16 @@ class Compiler {
 }  // namespace
 
 template <int D>
-tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys) {
+tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys,
+                                              const StopRequest& should_stop) {
   if (const auto error = broken_rule(keys)) return tl::unexpected(*error);
   auto written = written_out(keys);
   if (!written) return tl::unexpected(written.error());
-  return Compiler<D>(keys, *std::move(written)).compile();
+  if (is_stopped(should_stop)) return interruption();
+  return Compiler<D>(keys, *std::move(written), should_stop).compile();
 }
 
-template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&);
-template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&);
+template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&, const StopRequest&);
+template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&, const StopRequest&);
 
 }  // namespace pliant::timeline

@@ -4,6 +4,7 @@
 
 #include <tl/expected.hpp>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/extrapolated.hpp"
 #include "pliant/timeline/handle.hpp"
@@ -21,9 +22,12 @@ struct Compiled {
 
 /// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.
 template <int D>
-[[nodiscard]] tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys);
+[[nodiscard]] tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys,
+                                                            const StopRequest& should_stop = {});
 
-extern template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&);
-extern template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&);
+extern template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&,
+                                                              const StopRequest&);
+extern template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&,
+                                                              const StopRequest&);
 
 }  // namespace pliant::timeline

@@ -5,6 +5,7 @@
 
 #include <tl/expected.hpp>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/adjustment.hpp"
 #include "pliant/timeline/bounds.hpp"
 #include "pliant/timeline/curve_report.hpp"
@@ -43,7 +44,9 @@ class Curve {
   /// on one frame; keys so close that the slope between them overflows. Notes (legal): a negative
   /// length, which counts as 0; a handle that points backwards, which is ignored; a tangent that
   /// `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without copies.
-  [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys);
+  /// If it is stopped, an error that is an interruption.
+  [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys,
+                                                            const StopRequest& should_stop = {});
 
   Curve(const Curve&);  ///< shares its parts: of constant cost
   Curve(Curve&&) noexcept;

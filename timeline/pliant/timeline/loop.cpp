@@ -65,7 +65,6 @@ tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
   WrittenKeys<D> written;
   const bool has_copies = keys.loop && (keys.loop->before > 0 || keys.loop->after > 0);
   if (!has_copies) {
-    for (std::size_t k = 0; k < keys.keys.size(); ++k) append(written, keys.keys[k], k);
     if (keys.loop) written.notes.push_back({0, "the loop has no copies and no effect"});
     return written;
   }

@@ -13,9 +13,14 @@ namespace pliant::timeline {
 /// Keys with the inner loop's copies written out.
 template <int D>
 struct WrittenKeys {
-  std::vector<Key<D>> keys;         ///< frames strictly increasing
+  std::vector<Key<D>> keys;         ///< frames strictly increasing; empty: no copies to write
   std::vector<std::size_t> origin;  ///< the author's index of each key
   std::vector<CurveNote> notes;     ///< about keys that the loop hides, or a loop without copies
+
+  const std::vector<Key<D>>& keys_of(const CurveKeys<D>& author) const {
+    return keys.empty() ? author.keys : keys;
+  }
+  std::size_t origin_of(std::size_t key) const { return origin.empty() ? key : origin[key]; }
 };
 
 /// The most keys that a loop may write out.

@@ -101,11 +101,12 @@ class System {
     for (std::size_t k = 0; k < keys; ++k) write_equations(k);
   }
 
-  void solve() {
+  void solve(const StopRequest& should_stop) {
     if (unknowns_.empty()) return;
     do {
       solve_ring(unknowns_);
-    } while (fix_what_overshoots());
+      slopes_.is_stopped = is_stopped(should_stop);
+    } while (!slopes_.is_stopped && fix_what_overshoots());
   }
 
   void store() {
@@ -280,9 +281,10 @@ class System {
 
 }  // namespace
 
-void solve_smooth_tangents(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes) {
+void solve_smooth_tangents(const KeyPolyline& polyline, const SmoothSides& sides, Slopes& slopes,
+                           const StopRequest& should_stop) {
   System system(polyline, sides, slopes);
-  system.solve();
+  system.solve(should_stop);
   system.store();
 }
 

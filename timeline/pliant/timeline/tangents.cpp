@@ -96,7 +96,7 @@ SmoothKind smooth_kind(const Tangent<D>& tangent) {
 
 template <int D>
 Slopes tangent_slopes(const std::vector<Key<D>>& keys, const Extrapolation<D>& before,
-                      const Extrapolation<D>& after, int c) {
+                      const Extrapolation<D>& after, int c, const StopRequest& should_stop) {
   const KeyPolyline polyline = key_polyline_of(keys, before, after, c);
   const Side<D> side(keys, polyline, 1e-3 * polyline.range(), c);
   Slopes slopes;
@@ -109,13 +109,13 @@ Slopes tangent_slopes(const std::vector<Key<D>>& keys, const Extrapolation<D>& b
     smooth.in.push_back(smooth_kind(keys[k].in));
     smooth.out.push_back(smooth_kind(keys[k].out));
   }
-  solve_smooth_tangents(polyline, smooth, slopes);
+  solve_smooth_tangents(polyline, smooth, slopes, should_stop);
   return slopes;
 }
 
 template Slopes tangent_slopes(const std::vector<Key<1>>&, const Extrapolation<1>&,
-                               const Extrapolation<1>&, int);
+                               const Extrapolation<1>&, int, const StopRequest&);
 template Slopes tangent_slopes(const std::vector<Key<3>>&, const Extrapolation<3>&,
-                               const Extrapolation<3>&, int);
+                               const Extrapolation<3>&, int, const StopRequest&);
 
 }  // namespace pliant::timeline

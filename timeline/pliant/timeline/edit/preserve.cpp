@@ -144,7 +144,7 @@ tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys) {
   auto written = written_out(keys);
   if (!written) return tl::unexpected(written.error());
   CurveKeys<D> result = keys;
-  result.keys = std::move(written->keys);
+  if (!written->keys.empty()) result.keys = std::move(written->keys);
   result.loop.reset();
   return result;
 }

@@ -186,13 +186,14 @@ tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) 
   auto written = written_out(curve.keys());
   if (!written) return tl::unexpected(written.error());
   CurveKeys<D> before = curve.keys();
-  before.keys = written->keys;
+  if (!written->keys.empty()) before.keys = written->keys;
   before.loop.reset();
   if (const auto key = EndKeys<D>(before).held_jump()) {
-    return tl::unexpected(CurveError{
-        written->origin[*key], "the key at frame " + number_text(before.keys[*key].frame) +
-                                   " jumps, and a side that repeats keeps its value after the last "
-                                   "copy, which cannot be reversed; remove the count or the jump"});
+    return tl::unexpected(
+        CurveError{written->origin_of(*key),
+                   "the key at frame " + number_text(before.keys[*key].frame) +
+                       " jumps, and a side that repeats keeps its value after the last "
+                       "copy, which cannot be reversed; remove the count or the jump"});
   }
   const auto shape_before = shape_of(before);
   if (!shape_before) return tl::unexpected(shape_before.error());
