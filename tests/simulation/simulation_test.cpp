@@ -316,7 +316,8 @@ TEST_CASE("a run stops when asked to, and goes on afterwards", "[simulation]") {
   const Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
   int steps_left = 1000;
   auto simulation = Simulation::make(s, {.should_stop = [&] { return steps_left-- == 0; }}).value();
-  steps_left = 12;  // 5 per frame
+  REQUIRE(simulation.at(3));
+  steps_left = 3;  // the step from frame 3 on asks more often
   const auto stopped = simulation.at(12);
   REQUIRE_FALSE(stopped);
   CHECK(stopped.error().code == ErrorCode::Interrupted);

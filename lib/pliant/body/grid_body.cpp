@@ -106,8 +106,8 @@ GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, S
                    RunContext context, std::shared_ptr<const NodeFactors> factors)
     : Body(std::move(rest), grid.node_count(), settings, std::move(factors)),
       grid_(grid),
-      profile_(context.profile),
-      solvers_(solver, std::move(context)) {
+      context_(std::move(context)),
+      solvers_(solver, context_) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
 }
 
@@ -180,19 +180,21 @@ Result<void> GridBody::step(const BodyInputs& inputs) {
     work_.plan = {};
     return {};
   }
-  StageTimer planning(profile_, Stage::Selection);
+  StageTimer planning(context_.profile, Stage::Selection);
   if (auto planned = plan(inputs, work_); !planned) return planned;
   planning.stop();
+  if (context_.is_stopped()) return interrupted();
   if (!work_.plan.solves()) {
     put_at_rest(work_.plan.settling);
     return {};
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
-  StageTimer beginning(profile_, Stage::StateOut);
+  StageTimer beginning(context_.profile, Stage::StateOut);
   begin_next();
   beginning.stop();
   if (auto solved = solve(inputs); !solved) return solved;
-  const StageTimer ending(profile_, Stage::StateOut);
+  if (context_.is_stopped()) return interrupted();
+  const StageTimer ending(context_.profile, Stage::StateOut);
   if (remembers_push()) keep_push(inputs);
   return take();
 }
@@ -243,7 +245,7 @@ void GridBody::fit_factors(const Patch& patch, PatchSolve& one) const {
 Result<Dynamics> GridBody::dynamics_of(const BodyInputs& inputs, const Region& region,
                                        std::size_t place) {
   if (!inputs.asks_for_vibrations()) return inputs.dynamics;
-  const StageTimer timer(profile_, Stage::SetUp);
+  const StageTimer timer(context_.profile, Stage::SetUp);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < region.patches.size(); ++k) {
     PatchSolve& one = work_.solves[place + k];
@@ -276,6 +278,7 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
       if (!patch.is_held() && !resists_motion(*dynamics, plan.steps.solved_length())) {
         return fail(ErrorCode::SolverFailed, not_held(plan.is_whole));
       }
+      if (context_.is_stopped()) return interrupted();
       PatchSolve& one = work_.solves[place++];
       PlateProblem& problem = one.problem;
       const Box& box = patch.box;
@@ -288,7 +291,7 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
       problem.tangents = tangents_of(grid_, patch, region, inputs.tangents);
       problem.law = inputs.law;
       {
-        const StageTimer timer(profile_, Stage::Load);
+        const StageTimer timer(context_.profile, Stage::Load);
         problem.load = assemble_load(grid_, work_.tiles.nodes(), inputs.forces, plan.selection, k,
                                      box, to_object, std::move(problem.load));
         if (remembers_push()) {
@@ -297,8 +300,9 @@ Result<void> GridBody::solve(const BodyInputs& inputs) {
               tangents_of(grid_, patch, region, first_tangents(inputs.tangents));
         }
       }
+      if (context_.is_stopped()) return interrupted();
       {
-        const StageTimer timer(profile_, Stage::StateIn);
+        const StageTimer timer(context_.profile, Stage::StateIn);
         Field& displacement = one.plate.displacement;
         displacement = from_rest
                            ? difference_of(grid_, box, positions, rest_, std::move(displacement))

@@ -60,7 +60,7 @@ class GridBody final : public Body {
   void mark_unsettled();
 
   Grid grid_;
-  Profile* profile_;  // null: no profiling
+  RunContext context_;
   SolverCache solvers_;
   VibrationCache vibrations_;
   BodyWorkspace work_;
