@@ -64,6 +64,21 @@ TEST_CASE("edges count the sides that lie on them", "[mesh][surface]") {
   CHECK(s.edges_of(0)[1] == s.edges_of(3)[0]);
 }
 
+TEST_CASE("an edge may belong to 256 faces, but not to more", "[mesh][surface]") {
+  const auto book = [](int pages) {
+    std::vector<Vector3d> places = {{0, 0, 0}, {0, 0, 1}};
+    std::vector<std::vector<int>> faces;
+    for (int k = 0; k < pages; ++k) {
+      const double turn = 2 * std::numbers::pi * k / pages;
+      places.emplace_back(std::cos(turn), std::sin(turn), 0.5);
+      faces.push_back({0, 1, k + 2});
+    }
+    return make_surface(mesh_of(places, faces));
+  };
+  CHECK(book(256).value().edge_sides.front() == 256);
+  CHECK_THAT(book(257).error().message, contains_text("between the vertices 0 and 1 belongs to"));
+}
+
 TEST_CASE("a face of more than three corners is a fan round its centre", "[mesh][surface]") {
   const TriangleSurface s = surface_of(five_places, {{0, 1, 2, 3}, {1, 4, 2}});
   CHECK(s.triangle_starts == std::vector{0, 4, 5});

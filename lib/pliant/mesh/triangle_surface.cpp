@@ -18,6 +18,9 @@ namespace {
 // The share of the bounding box's diagonal within which vertices are one node.
 constexpr double one_node = 1e-6;
 
+// The slope across an edge joins all its faces, so that a frame costs the square of their number.
+constexpr int most_faces_of_edge = 256;
+
 // Items 0 to #keys - 1 sorted by their keys 0 to `count` - 1, and where each key begins.
 struct Sorted {
   std::vector<int> starts;  // #keys + 1
@@ -73,7 +76,7 @@ class SurfaceMaker {
           "or a corner twice",
           mesh_.face_sizes.size()));
     }
-    number_edges();
+    if (auto numbered = number_edges(); !numbered) return fail(numbered.error());
     if (!is_stopped()) list_faces_of_nodes();
     if (!is_stopped()) lay_flat();
     if (is_stopped()) return interrupted();
@@ -209,12 +212,12 @@ class SurfaceMaker {
   }
 
   // Edges in the order of their lower nodes, then of the higher ones.
-  void number_edges() {
+  Result<void> number_edges() {
     const std::size_t corner_count = surface_.corner_nodes.size();
     std::vector<int> highers(corner_count), lowers(corner_count);
     for (int face = 0; face < surface_.face_count(); ++face) {
       const std::span<const int> nodes = surface_.nodes_of(face);
-      if (poll_.after(nodes.size())) return;
+      if (poll_.after(nodes.size())) return {};
       const auto start = static_cast<std::size_t>(surface_.face_starts[face]);
       for (std::size_t k = 0; k < nodes.size(); ++k) {
         const auto [low, high] = std::minmax(nodes[k], nodes[(k + 1) % nodes.size()]);
@@ -224,18 +227,28 @@ class SurfaceMaker {
     }
     Sorted sides = sorted_by(corner_count, surface_.node_count(), poll_,
                              [&](std::size_t corner) { return lowers[corner]; });
-    if (is_stopped()) return;
+    if (is_stopped()) return {};
     surface_.corner_edges.resize(corner_count);
     for (int node = 0; node < surface_.node_count(); ++node) {
       const std::span<int> some = sides.of(node);
-      if (poll_.after(1 + 10 * some.size())) return;
+      if (poll_.after(1 + 10 * some.size())) return {};
       std::ranges::sort(some, {}, [&](int corner) { return std::pair(highers[corner], corner); });
       for (std::size_t k = 0; k < some.size(); ++k) {
         if (k == 0 || highers[some[k]] != highers[some[k - 1]]) surface_.edge_sides.push_back(0);
-        ++surface_.edge_sides.back();
+        if (++surface_.edge_sides.back() > most_faces_of_edge) {
+          return invalid(fmt::format(
+              "the edge between the vertices {} and {} belongs to more than {} faces",
+              first_vertex_of(node), first_vertex_of(highers[some[k]]), most_faces_of_edge));
+        }
         surface_.corner_edges[some[k]] = surface_.edge_count() - 1;
       }
     }
+    return {};
+  }
+
+  int first_vertex_of(int node) const {
+    const std::vector<int>& nodes = surface_.vertex_nodes;
+    return mesh_.number_of(static_cast<int>(std::ranges::find(nodes, node) - nodes.begin()));
   }
 
   void list_faces_of_nodes() {

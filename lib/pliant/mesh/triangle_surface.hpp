@@ -61,7 +61,8 @@ struct TriangleSurface {
 /// Reads a mesh as a surface. A face takes no part if fewer than three of its corners are left once
 /// repeated ones are dropped, if it has a node twice, or the nodes of an earlier face. Requires:
 /// `check_mesh` accepts the mesh; `reading` has the ranges of its comments. Errors: no face takes
-/// part; the surface has no area, or lengths that are not finite; Interrupted.
+/// part; an edge belongs to more than 256 faces; the surface has no area, or lengths that are not
+/// finite; Interrupted.
 Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& reading = {},
                                      const StopRequest& should_stop = {});
 
