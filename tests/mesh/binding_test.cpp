@@ -1,9 +1,12 @@
 #include "pliant/mesh/binding.hpp"
 
+#include <cmath>
+#include <numbers>
 #include <random>
 
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
+#include "support/sanitized.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;
@@ -149,6 +152,33 @@ TEST_CASE("nothing moves where the driver is still", "[mesh][binding]") {
     const Vector3d way = points.row(k).transpose() - centre;
     if (std::hypot(way.x(), way.z()) > 1) CHECK(displacements.row(k) == Eigen::RowVector3d::Zero());
   }
+}
+
+TEST_CASE("points as far from thousands of triangles as from one are refused", "[mesh][binding]") {
+  // A band of triangles around an axis, and points on it.
+  constexpr int count = 8192;
+  std::vector<Vector3d> places;
+  std::vector<std::vector<int>> faces;
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count;
+    for (const double z : {-0.1, 0.1}) places.emplace_back(std::cos(angle), std::sin(angle), z);
+    const int next = (k + 1) % count;
+    faces.push_back({2 * k, 2 * next, 2 * k + 1});
+    faces.push_back({2 * next, 2 * next + 1, 2 * k + 1});
+  }
+  const TriangleSurface band = make_surface(mesh_of(places, faces)).value();
+  constexpr int point_count = 400;
+  if (is_sanitized) return;  // millions of trials
+  Field points = Field::Zero(point_count, 3);
+  std::size_t asked = 0;
+  const auto count_asks = [&] { return ++asked == 0; };
+  const auto refused = Binding::make(band, {}, points, count_asks);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message, contains_text("as far from thousands of triangles"));
+  // All of it would ask more than twice as often.
+  CHECK(asked < std::size_t{point_count} * 2 * count * 20 / StopPoll::parts_between / 2);
+  points.col(0).setConstant(0.9);  // the same beside the axis
+  CHECK(Binding::make(band, {}, points).has_value());
 }
 
 TEST_CASE("a binding is found where both meshes are placed", "[mesh][binding]") {

@@ -10,6 +10,11 @@
 namespace pliant {
 namespace {
 
+// Trials of triangles in the searches for closest points: what one costs, and how many there may
+// be. A point as far from the driver as a ball's half radius takes about the root of the number of
+// triangles.
+constexpr std::size_t parts_of_trial = 20, most_trials = 1'000'000, most_trials_of_point = 4096;
+
 // A power of two, by which no coordinate of these is larger than 1.
 double scale_of(const Field& a, const Field& b) {
   const double most = std::max(a.cwiseAbs().maxCoeff(), b.size() > 0 ? b.cwiseAbs().maxCoeff() : 0);
@@ -36,10 +41,17 @@ Result<Binding> Binding::make(const TriangleSurface& driver, const Transform& tr
   std::vector<int>& triangles = binding.triangles_of_points_;
   triangles.reserve(static_cast<std::size_t>(points.rows()));
   binding.weights_.reserve(static_cast<std::size_t>(points.rows()));
+  std::size_t tried = 0;
   for (Eigen::Index k = 0; k < points.rows(); ++k) {
-    if (poll.after(2000)) return interrupted();
     const int near = k > 0 ? triangles.back() : 0;  // neighbours in a mesh are near
     const ClosestPoint closest = tree->closest(scale * points.row(k).transpose(), near);
+    if (poll.after(2000 + parts_of_trial * closest.tried)) return interrupted();
+    tried += closest.tried;
+    if (tried > most_trials + most_trials_of_point * static_cast<std::size_t>(points.rows())) {
+      return invalid(
+          "the driven vertices are as far from thousands of triangles as from the closest one, "
+          "like the centre of a sphere");
+    }
     triangles.push_back(closest.triangle);
     binding.weights_.push_back(closest.weights);
   }

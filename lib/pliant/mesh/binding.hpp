@@ -21,7 +21,8 @@ namespace pliant {
 class Binding {
  public:
   /// `transform` takes the driver's object space to the space of `points` (#points x 3). Cost:
-  /// O(#points log #triangles). Requires: all coordinates are finite. Errors: Interrupted.
+  /// O(#points log #triangles). Requires: all coordinates are finite. Errors: points that are as
+  /// far from thousands of triangles; Interrupted.
   static Result<Binding> make(const TriangleSurface& driver, const Transform& transform,
                               const Field& points, const StopRequest& should_stop = {});
 

@@ -61,9 +61,11 @@ struct TriangleTree::Found {
       const bool is_closer =
           squared < squared_distance || (squared == squared_distance && triangle < place.triangle);
       if (!is_closer) return;
-      place = {triangle, weights};
+      place.triangle = triangle;
+      place.weights = weights;
       squared_distance = squared;
     };
+    ++place.tried;
     const std::array<double, 3> above = weights_above(corners, p);
     if (std::ranges::all_of(above, [](double weight) { return weight >= 0; })) try_weights(above);
     for (int k = 0; k < 3; ++k) try_weights(weights_on_side(corners, k, p));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace pliant {
 struct ClosestPoint {
   int triangle = 0;
   std::array<double, 3> weights = {1, 0, 0};  ///< of the triangle's corners: barycentric, sum 1
+  std::size_t tried = 0;                      ///< triangles that the search looked at
 };
 
 /// Triangles in a tree of boxes, so that a search visits few of them. Degenerate triangles are

@@ -427,18 +427,18 @@ Result<void> bind_to_driver(ReservedShape& driven, const Surface& own, const Res
     if (!nodes) return fail(nodes.error());
     triangles = std::make_shared<const TriangleSurface>(posed(**triangles, **nodes));
   }
-  if (!triangles) {
-    if (triangles.error().code == ErrorCode::Interrupted) return fail(triangles.error());
-    return fail(
-        scene.origin.located({.code = ErrorCode::InvalidInput,
-                              .message = fmt::format("{} cannot drive {}: {}", title_of(driving),
-                                                     own.name, triangles.error().message)},
-                             scene.origin.line_of(own.name, "drivenBy")));
-  }
+  const auto refuse = [&](const Error& error) -> Result<void> {
+    if (error.code == ErrorCode::Interrupted) return fail(error);
+    return fail(scene.origin.located(
+        {.message =
+             fmt::format("{} cannot drive {}: {}", title_of(driving), own.name, error.message)},
+        scene.origin.line_of(own.name, "drivenBy")));
+  };
+  if (!triangles) return refuse(triangles.error());
   auto binding =
       Binding::make(**triangles, driving.transform.at(scene.start),
                     to_world(own.transform.at(scene.start), shape.mesh.positions), should_stop);
-  if (!binding) return fail(binding.error());
+  if (!binding) return refuse(binding.error());
   shape.binding = std::make_shared<const Binding>(*std::move(binding));
   return {};
 }
