@@ -186,7 +186,7 @@ TEST_CASE("what is carried away has no cycle, whatever rounding makes of it",
   free.solver.loop = 20;
   free.solver.integrator =
       GENERATE(Integrator::BackwardEuler, Integrator::Newmark, Integrator::Exact);
-  free.material.density = GENERATE(0.0, 3.0);
+  free.material.density = is_sanitized ? 3.0 : GENERATE(0.0, 3.0);
   free.material.damping = 1;
   Force wind = poke("wind", {}, 5);
   wind.kind = UniformChannels{};

@@ -247,6 +247,7 @@ TEST_CASE("a narrow plate flows by what is held alone", "[plate][plastic]") {
   for (const Narrow& one : {Narrow{3, 9, false}, Narrow{9, 3, false}, Narrow{3, 3, false},
                             Narrow{3, 9, true}, Narrow{9, 3, true}}) {
     for (const bool is_pushed : {false, true}) {
+      if (is_sanitized && !is_pushed) continue;
       CAPTURE(one.columns, one.rows, one.is_bent_by_its_rim, is_pushed);
       const Grid grid = unit_grid(one.columns, one.rows);
       PlateProblem problem{{grid}, {1, 1, 2}, {0.02, 0.05}, {}, Field::Zero(grid.node_count(), 3)};
@@ -270,7 +271,7 @@ TEST_CASE("a narrow plate flows by what is held alone", "[plate][plastic]") {
       const DensePlate dense(problem);
       const auto solver = make_plate_solver();
       PlateState expected = state;
-      for (int frame = 0; frame < 3; ++frame) {
+      for (int frame = 0; frame < (is_sanitized ? 1 : 3); ++frame) {
         auto next = solver->advance(problem, {2, 0.02}, state);
         REQUIRE(next.has_value());
         state = *std::move(next);
