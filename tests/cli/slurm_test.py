@@ -361,7 +361,7 @@ class Slurm(Command):
         self.assertIn("submitted 123: 3 parts", self.submit("--parts", "3").stdout)
 
     def test_a_program_that_says_too_much_is_ended_and_cut_short(self):
-        self.write("bin/squeue", "#!/bin/bash\nexec yes\n")
+        self.write("bin/squeue", f"#!/bin/bash\nexec yes {'y' * 4000}\n")
         failed = self.submit("--parts", "3", code=1)
         self.assertIn("squeue writes more than 256 MiB", failed.stderr)
         self.assertEqual(failed.stderr.count("\n"), 1, failed.stderr)
