@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "bake.hpp"
 #include "complete.hpp"
@@ -95,8 +96,10 @@ int run(int count, char* arguments[]) {
 }  // namespace
 
 int main(int count, char* arguments[]) {
+  // Without what is done at an exit: LeakSanitizer stops the process there, and the SIGCONT of
+  // Keeper::end would undo that, so that both wait for ever.
   if (count > 1 && arguments[1] == keeper_request)
-    return run_keeper({arguments + 2, arguments + count + 1});
+    _exit(run_keeper({arguments + 2, arguments + count + 1}));
   own_standard_streams();
   raise_file_limit();
   try {
