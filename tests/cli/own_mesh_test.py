@@ -115,7 +115,7 @@ class OwnMesh(Command):
         return peaks
 
     def test_every_shape_moves_within_its_size(self):
-        for name, (mesh, is_held) in SHAPES.items():
+        for name, (mesh, is_held) in list(SHAPES.items())[::4 if SANITIZED else 1]:
             with self.subTest(shape=name, starter="mesh"):
                 peaks = self.check(mesh, "mesh")
                 used = np.unique([k for face in mesh[1] for k in face])

@@ -69,7 +69,7 @@ class SuggestBake(Command):
         return told
 
     def test_every_choice_of_a_scene(self):
-        for name, case in CASES.items():
+        for name, case in list(CASES.items())[::4 if SANITIZED else 1]:
             values = {"end": 30, "surface": "", "material": "", "solver": "", "forces": POKE, **case}
             text = SCENE.format(**values)
             if "dampingRatio" in text:

@@ -172,7 +172,8 @@ class SweepPages(SweepViews):
         small = 'columns=\\"5\\" rows=\\"9\\"'
         self.assertIn(small, plan)
         with open(self.path("s/sweep.json"), "w", encoding="utf-8") as file:
-            file.write(plan.replace(small, 'columns=\\"801\\" rows=\\"801\\"'))
+            side = 301 if SANITIZED else 801
+            file.write(plan.replace(small, f'columns=\\"{side}\\" rows=\\"{side}\\"'))
         before = set(glob.glob(self.path("**"), recursive=True))
         for number in (signal.SIGINT, signal.SIGTERM):
             with subprocess.Popen([PLIANT, "sweep", "view", self.path("s"), "-o", self.path("s.html"), "--frame", "2"],
