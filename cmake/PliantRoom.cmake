@@ -45,9 +45,14 @@ if(PLIANT_SANITIZE)
   endif()
 endif()
 
+# The cache serves every copy of the project, whatever its folder. Unity files have absolute names,
+# so that only the preprocessed text of copies is the same: CCACHE_DEPEND would find nothing.
 find_program(PLIANT_CCACHE ccache)
 if(PLIANT_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${PLIANT_CCACHE})
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1 ${PLIANT_CCACHE})
+  if(CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
+    add_compile_options("-ffile-prefix-map=${PROJECT_SOURCE_DIR}=.")
+  endif()
 endif()
 
 # pliant_sanitize_fast(TARGET): for rooms that need little of the tests' time. Optimising UBSan's

@@ -9,6 +9,7 @@
 #include "pliant/core/read_file.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 #include "support/random_scene.hpp"
 #include "support/sanitized.hpp"
 #include "support/scene_values.hpp"
@@ -130,8 +131,8 @@ TEST_CASE("a layout keeps the scene and is kept", "[document][format]") {
 TEST_CASE("the examples are laid out so that they stay the same", "[document][format]") {
   for (const char* const folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(
-             std::filesystem::path(PLIANT_SOURCE_FOLDER) / folder)) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(testing::source_folder() / folder)) {
       if (entry.path().extension() != ".xml") continue;
       CAPTURE(entry.path().string());
       const std::string text = read_file(entry.path()).value();

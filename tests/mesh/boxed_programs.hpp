@@ -5,12 +5,13 @@
 
 #include "pliant/core/read_file.hpp"
 #include "pliant/mesh/boxed_reader.hpp"
+#include "support/places.hpp"
 
 namespace pliant::testing {
 
 /// The program of boxed/misbehave.cpp; its second argument selects its behaviour.
 inline const std::string& misbehaving() {
-  static const std::string program = read_file(PLIANT_MISBEHAVING).value();
+  static const std::string program = read_file(misbehaving_program()).value();
   return program;
 }
 

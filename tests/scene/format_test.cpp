@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "scene/scene_text.hpp"
+#include "support/places.hpp"
 #include "support/scratch_folder.hpp"
 
 namespace pliant::testing {
@@ -39,7 +40,7 @@ std::vector<std::string> cells_of(const std::string& line) {
 
 /// The rows below each header that starts with element and `second`.
 std::vector<std::vector<std::string>> rows_below(const std::string& second) {
-  std::ifstream page(PLIANT_SCENE_FORMAT_PAGE);
+  std::ifstream page(testing::source_folder() / "docs/scene-format.md");
   REQUIRE(page);
   std::vector<std::vector<std::string>> rows;
   bool is_below = false;
@@ -267,7 +268,7 @@ std::vector<std::string> problems_of_example(const std::string& example,
 
 TEST_CASE("the examples of the page are read", "[scene][format]") {
   const ScratchFolder folder;
-  std::ifstream page(PLIANT_SCENE_FORMAT_PAGE);
+  std::ifstream page(testing::source_folder() / "docs/scene-format.md");
   REQUIRE(page);
   int examples = 0;
   std::string example;

@@ -18,6 +18,7 @@
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
 #include "support/catch.hpp"
+#include "support/places.hpp"
 #include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
@@ -499,8 +500,8 @@ TEST_CASE("every element and attribute stands where tinyxml2 finds it", "[scene]
 
 TEST_CASE("scenes of files and written ones stand where tinyxml2 finds them", "[scene][markup]") {
   for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
-    for (const auto& entry : std::filesystem::directory_iterator(
-             std::filesystem::path(PLIANT_SOURCE_FOLDER) / folder)) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(testing::source_folder() / folder)) {
       if (entry.path().extension() != ".xml") continue;
       CAPTURE(entry.path().string());
       CHECK(PlaceCheck(read_file(entry.path().string(), 1U << 20U).value()).find() == "");

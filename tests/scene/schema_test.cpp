@@ -10,12 +10,12 @@
 
 #include "pliant/scene/format.hpp"
 #include "scene/scene_text.hpp"
+#include "support/places.hpp"
 
 namespace pliant::testing {
 namespace {
 
-const std::filesystem::path schema_file =
-    std::filesystem::path(PLIANT_SOURCE_FOLDER) / "docs/pliant-scene.xsd";
+const std::filesystem::path schema_file = testing::source_folder() / "docs/pliant-scene.xsd";
 
 TEST_CASE("the schema of the documents is the one that the format makes", "[scene][schema]") {
   std::ifstream file(schema_file, std::ios::binary);

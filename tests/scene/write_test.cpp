@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/scene_text.hpp"
+#include "support/places.hpp"
 #include "support/scene_values.hpp"
 #include "support/scenes.hpp"
 
@@ -42,8 +43,8 @@ TEST_CASE("a written scene is read as it was, to the bit", "[scene][write]") {
   CHECK(check_round_trip(scene_of(rich_scene), "shots") == scene_of(rich_scene));
   for (const char* folder : {"examples", "examples/thesis", "tests/reference/scenes"}) {
     int count = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(
-             std::filesystem::path(PLIANT_SOURCE_FOLDER) / folder)) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(testing::source_folder() / folder)) {
       if (entry.path().extension() != ".xml") continue;
       CAPTURE(entry.path().string());
       const auto scene = load_scene(entry.path().string());
