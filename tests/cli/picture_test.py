@@ -405,7 +405,9 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
         deadline = time.monotonic() + 20
         while os.listdir(folder) and time.monotonic() < deadline:
             time.sleep(0.02)
-        self.assertEqual(os.listdir(folder), [])
+        if left := os.listdir(folder):
+            self.fail(f"{left}\n" + subprocess.run(["sh", "-c", "cd /proc; for p in [1-9]*; do tr '\\0' ' ' < $p/cmdline && echo; done"],
+                                                   check=False, capture_output=True, text=True).stdout)
 
     def test_at_whatever_moment_the_command_ends_nothing_is_left(self):
         for options, numbers in ((("--movie", "out.mp4"), (signal.SIGKILL,)), (("--movie", "out.gif"), (signal.SIGINT,)),
