@@ -344,7 +344,7 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
         return self.family()
 
     def await_end_of(self, processes):
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 120
         def runs(each):
             try:
                 with open(f"/proc/{each}/stat", encoding="utf-8") as file:
@@ -402,7 +402,7 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
         return found[1:]
 
     def await_empty(self, folder):
-        deadline = time.monotonic() + 20
+        deadline = time.monotonic() + 120
         while os.listdir(folder) and time.monotonic() < deadline:
             time.sleep(0.02)
         if left := os.listdir(folder):
