@@ -256,6 +256,13 @@ class BlenderReader : private JsonReader {
     file_.curves.push_back(std::move(curve));
   }
 
+  /// Of keys that were a curve before. False: a fault.
+  bool stopped(const CurveError& error) {
+    PLIANT_EXPECTS(error.is_interruption);
+    end();
+    return false;
+  }
+
   /// False: a fault.
   bool is_curve(const CurveKeys<1>& keys) {
     const auto made = Curve<1>::make(keys, reading_.should_stop);
@@ -366,8 +373,9 @@ class BlenderReader : private JsonReader {
   /// Source: fcm_cycles_time, fmodifier.c. Beyond the last copy Blender has what it has without
   /// copies. False: a fault.
   bool add_cycles(CurveKeys<1>& keys, const FSide& before, const FSide& after) {
-    const auto curve = Curve<1>::make(keys);
-    PLIANT_EXPECTS(curve.has_value());
+    if (before.mode == 0 && after.mode == 0) return true;
+    const auto curve = Curve<1>::make(keys, reading_.should_stop);
+    if (!curve) return stopped(curve.error());
     const auto holds = [&](const FSide& side, const Value<1>& slope) {
       if (side.count == 0) return true;
       if (slope[0] != 0) return false;
@@ -397,9 +405,10 @@ class BlenderReader : private JsonReader {
 
   bool write_cycles(CurveKeys<1>& keys, const CurveKeys<1>& plain, bool has_before,
                     bool has_after) {
-    const auto curve = Curve<1>::make(keys);
-    const auto without = Curve<1>::make(plain);
-    PLIANT_EXPECTS(curve.has_value() && without.has_value());
+    const auto curve = Curve<1>::make(keys, reading_.should_stop);
+    if (!curve) return stopped(curve.error());
+    const auto without = Curve<1>::make(plain, reading_.should_stop);
+    if (!without) return stopped(without.error());
     auto pieces = with_copies(pieces_of(*curve), has_before ? std::optional(-1e9) : std::nullopt,
                               has_after ? std::optional(1e9) : std::nullopt);
     if (!pieces) {
