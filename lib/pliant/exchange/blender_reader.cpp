@@ -246,32 +246,25 @@ class BlenderReader : private JsonReader {
     }
     if (joined > 0) lose(fmt::format("{} frames have several keys: they became jumps", joined));
     set_outside(keys, is_linear);
-    if (!is_curve(keys)) return;
+    if (!made(keys)) return;
     replace_turned_elastics(keys);
     if (fault_) return;
     const bool has_copies = keys.keys.size() > 1;
     if (has_copies && !add_cycles(keys, before, after)) return;
-    if (!is_curve(keys)) return;
+    if (!made(keys)) return;
     if (!count_keys(keys.keys.size() - std::min(keys.keys.size(), keys_.size()))) return;
     file_.curves.push_back(std::move(curve));
   }
 
-  /// Of keys that were a curve before. False: a fault.
-  bool stopped(const CurveError& error) {
-    PLIANT_EXPECTS(error.is_interruption);
-    end();
-    return false;
-  }
-
-  /// False: a fault.
-  bool is_curve(const CurveKeys<1>& keys) {
-    const auto made = Curve<1>::make(keys, reading_.should_stop);
-    if (made) return true;
-    if (made.error().is_interruption)
+  /// Null: a fault.
+  std::optional<Curve<1>> made(const CurveKeys<1>& keys) {
+    auto curve = Curve<1>::make(keys, reading_.should_stop);
+    if (curve) return *std::move(curve);
+    if (curve.error().is_interruption)
       end();
     else
-      refuse("keys", fmt::format("are not a curve: {}", made.error().message));
-    return false;
+      refuse("keys", fmt::format("are not a curve: {}", curve.error().message));
+    return {};
   }
 
   /// Source: fcurve_eval_keyframes_extrapolate, fcurve.c.
@@ -374,8 +367,8 @@ class BlenderReader : private JsonReader {
   /// copies. False: a fault.
   bool add_cycles(CurveKeys<1>& keys, const FSide& before, const FSide& after) {
     if (before.mode == 0 && after.mode == 0) return true;
-    const auto curve = Curve<1>::make(keys, reading_.should_stop);
-    if (!curve) return stopped(curve.error());
+    const auto curve = made(keys);
+    if (!curve) return false;
     const auto holds = [&](const FSide& side, const Value<1>& slope) {
       if (side.count == 0) return true;
       if (slope[0] != 0) return false;
@@ -405,10 +398,8 @@ class BlenderReader : private JsonReader {
 
   bool write_cycles(CurveKeys<1>& keys, const CurveKeys<1>& plain, bool has_before,
                     bool has_after) {
-    const auto curve = Curve<1>::make(keys, reading_.should_stop);
-    if (!curve) return stopped(curve.error());
-    const auto without = Curve<1>::make(plain, reading_.should_stop);
-    if (!without) return stopped(without.error());
+    const auto curve = made(keys), without = made(plain);
+    if (!curve || !without) return false;
     auto pieces = with_copies(pieces_of(*curve), has_before ? std::optional(-1e9) : std::nullopt,
                               has_after ? std::optional(1e9) : std::nullopt);
     if (!pieces) {
