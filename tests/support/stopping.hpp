@@ -30,7 +30,7 @@ enum class Stop { Once, Always };
 /// short.
 template <class Work, class Look>
 void check_stops(const Work& work, int least_asks, const Look& look, Stop stop = Stop::Once) {
-  std::set moments = {1, 2, least_asks / 2, least_asks};
+  std::set moments = {1, least_asks / 2, least_asks};
   if (!is_sanitized) {
     const int asks = asks_of(work);
     CHECK(asks >= least_asks);
