@@ -11,8 +11,7 @@ namespace pliant {
 namespace {
 
 // Trials of triangles in the searches for closest points: what one costs, and how many there may
-// be. A point as far from the driver as a ball's half radius takes about the root of the number of
-// triangles.
+// be. A point inside a ball, half its radius deep, takes about the root of the number of triangles.
 constexpr std::size_t parts_of_trial = 20, most_trials = 1'000'000, most_trials_of_point = 4096;
 
 // A power of two, by which no coordinate of these is larger than 1.
