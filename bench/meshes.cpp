@@ -27,7 +27,7 @@
 
 #include "measuring.hpp"
 #include "pliant/body/surface_body.hpp"
-#include "pliant/mesh/read_obj.hpp"
+#include "pliant/files/obj/read_obj.hpp"
 
 namespace {
 

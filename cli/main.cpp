@@ -8,22 +8,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "bake.hpp"
-#include "complete.hpp"
-#include "curve_exchange.hpp"
-#include "curves.hpp"
-#include "format.hpp"
-#include "info.hpp"
-#include "interrupt.hpp"
-#include "keeper.hpp"
-#include "new.hpp"
-#include "replay.hpp"
-#include "report.hpp"
-#include "suggest.hpp"
-#include "sweep.hpp"
-#include "usage.hpp"
-#include "validate.hpp"
-#include "view.hpp"
+#include "cli/commands/bake.hpp"
+#include "cli/commands/curve_exchange.hpp"
+#include "cli/commands/curves.hpp"
+#include "cli/commands/format.hpp"
+#include "cli/commands/info.hpp"
+#include "cli/commands/replay.hpp"
+#include "cli/commands/suggest.hpp"
+#include "cli/commands/validate.hpp"
+#include "cli/new/new.hpp"
+#include "cli/sweep/sweep.hpp"
+#include "cli/terminal/complete.hpp"
+#include "cli/terminal/interrupt.hpp"
+#include "cli/terminal/keeper.hpp"
+#include "cli/terminal/report.hpp"
+#include "cli/terminal/usage.hpp"
+#include "cli/view/view.hpp"
 
 namespace {
 

@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/mesh/point_cache.hpp"
-#include "pliant/mesh/read_gltf.hpp"
-#include "pliant/mesh/read_obj.hpp"
-#include "pliant/mesh/read_ply.hpp"
+#include "pliant/files/caches/point_cache.hpp"
+#include "pliant/files/gltf/read_gltf.hpp"
+#include "pliant/files/obj/read_obj.hpp"
+#include "pliant/files/ply/read_ply.hpp"
+#include "pliant/files/read_file.hpp"
 #include "tiny_scene.hpp"
 
 using namespace pliant;

@@ -1,14 +1,14 @@
 // A scene with the files that it includes: parts of one input, between lines of %%. The first is
 // a.xml, the others are b.xml, c.xml, …
 
-#include "pliant/scene/expand.hpp"
+#include "pliant/scene/text/expand.hpp"
 
 #include <map>
 #include <vector>
 
 #include "fuzz.hpp"
-#include "pliant/scene/arithmetic.hpp"
-#include "pliant/scene/scene_file.hpp"
+#include "pliant/scene/reading/scene_file.hpp"
+#include "pliant/scene/text/arithmetic.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;

@@ -15,9 +15,9 @@
 #include "pliant/core/result.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/mesh.hpp"
-#include "pliant/mesh/subdivide.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
-#include "pliant/mesh/triangulate.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangulate.hpp"
+#include "pliant/mesh/written/subdivide.hpp"
 
 namespace pliant::fuzzing {
 

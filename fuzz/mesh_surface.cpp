@@ -13,7 +13,7 @@
 #include "fuzz.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/memory_budget.hpp"
-#include "pliant/mesh/binding.hpp"
+#include "pliant/mesh/written/binding.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;

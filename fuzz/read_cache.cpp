@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "fuzz.hpp"
-#include "pliant/mesh/point_cache.hpp"
+#include "pliant/files/caches/point_cache.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;

@@ -1,6 +1,6 @@
 // Arbitrary bytes as a glTF.
 
-#include "pliant/mesh/read_gltf.hpp"
+#include "pliant/files/gltf/read_gltf.hpp"
 
 #include "fuzz.hpp"
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "fuzz.hpp"
-#include "pliant/mesh/npy_grid.hpp"
-#include "pliant/mesh/read_ply.hpp"
-#include "pliant/mesh/read_png.hpp"
+#include "pliant/files/npy/npy_grid.hpp"
+#include "pliant/files/ply/read_ply.hpp"
+#include "pliant/files/png/read_png.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;

@@ -1,6 +1,6 @@
 // Arbitrary bytes as an OBJ, and as its object "a".
 
-#include "pliant/mesh/read_obj.hpp"
+#include "pliant/files/obj/read_obj.hpp"
 
 #include "fuzz.hpp"
 

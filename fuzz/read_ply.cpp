@@ -1,6 +1,6 @@
 // Arbitrary bytes as a PLY.
 
-#include "pliant/mesh/read_ply.hpp"
+#include "pliant/files/ply/read_ply.hpp"
 
 #include "fuzz.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/log_line.hpp"
 #include "pliant/replay/replay.hpp"

@@ -1,6 +1,6 @@
 #include "viewer/force_values.hpp"
 
-#include "pliant/scene/description.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant::viewer {
 namespace {

@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "pliant/mesh/triangulate.hpp"
+#include "pliant/mesh/triangles/triangulate.hpp"
 
 namespace pliant::viewer {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "pliant/output/single_precision.hpp"
+#include "pliant/files/single_precision.hpp"
 
 namespace pliant::viewer {
 namespace {

@@ -8,7 +8,7 @@ import unittest
 
 from command import Command, PLIANT, SOURCE, main
 
-SCRIPTS = os.path.join(SOURCE, "cli/completion")
+SCRIPTS = os.path.join(SOURCE, "cli/terminal/completion")
 
 
 class Complete(Command):

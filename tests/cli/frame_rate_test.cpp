@@ -1,4 +1,4 @@
-#include "frame_rate.hpp"
+#include "cli/commands/frame_rate.hpp"
 
 #include <limits>
 

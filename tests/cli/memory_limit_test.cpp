@@ -1,4 +1,4 @@
-#include "memory_limit.hpp"
+#include "cli/terminal/memory_limit.hpp"
 
 #include <filesystem>
 #include <map>

@@ -19,7 +19,7 @@ long = unittest.skipIf(SANITIZED, "bakes for many minutes")
 
 class New(Command):
     def starter(self, name):
-        with open(os.path.join(SOURCE, "cli/starters", name), encoding="utf-8") as file:
+        with open(os.path.join(SOURCE, "cli/new/starters", name), encoding="utf-8") as file:
             return file.read()
 
     def attribute(self, scene, name):
@@ -35,7 +35,7 @@ class New(Command):
         return np.linalg.norm(frames - frames[0], axis=2).max(axis=1), notes
 
     def test_the_list_has_every_file_of_the_folder(self):
-        files = {name[:-4] for name in os.listdir(os.path.join(SOURCE, "cli/starters")) if name.endswith(".xml")}
+        files = {name[:-4] for name in os.listdir(os.path.join(SOURCE, "cli/new/starters")) if name.endswith(".xml")}
         self.assertEqual(files, set(STARTERS))
         listed = re.findall(r"^  (\w+) +(\S.*)$", self.run_pliant("new").stdout, re.MULTILINE)
         self.assertEqual({name for name, _ in listed}, set(STARTERS) | set(MATERIALS))
@@ -54,7 +54,7 @@ class New(Command):
         self.assertEqual(len(self.files()), len(STARTERS) + len(WITH_MESH))
 
     def test_the_pudding_is_made_by_its_script(self):
-        subprocess.run(["python3", os.path.join(SOURCE, "cli/starters/make_pudding.py"), self.path("p.obj")], check=True)
+        subprocess.run(["python3", os.path.join(SOURCE, "cli/new/starters/make_pudding.py"), self.path("p.obj")], check=True)
         self.assertEqual(self.read("p.obj").decode(), self.starter("pudding.obj"))
 
     @long

@@ -173,7 +173,7 @@ class Schema(Command):
         return [(problems[name], accepted.get(name, False)) for name in names]
 
     def test_all_scenes_of_the_project_are_valid(self):
-        found = [path for folder in ("examples", "tests", "docs", "bench", "cli/starters")
+        found = [path for folder in ("examples", "tests", "docs", "bench", "cli/new/starters")
                  for path in glob.glob(os.path.join(SOURCE, folder, "**/*.xml"), recursive=True)]
         self.assertGreater(len(found), 80)
         result = subprocess.run(["xmllint", "--noout", "--schema", SCHEMA, *found], capture_output=True, text=True,

@@ -1,10 +1,10 @@
-#include "slurm_script.hpp"
+#include "cli/sweep/slurm_script.hpp"
 
 #include <numeric>
 #include <string>
 #include <vector>
 
-#include "shell_word.hpp"
+#include "cli/terminal/shell_word.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant::cli;

@@ -86,7 +86,7 @@ class SuggestBake(Command):
                         self.assertIsNotNone(told["peak"]["found"])
 
     def test_every_starter(self):
-        for name in sorted(os.path.basename(f)[:-4] for f in glob.glob(os.path.join(SOURCE, "cli/starters/*.xml"))):
+        for name in sorted(os.path.basename(f)[:-4] for f in glob.glob(os.path.join(SOURCE, "cli/new/starters/*.xml"))):
             with self.subTest(starter=name):
                 self.run_pliant("new", name, "-o", f"{name}.xml")
                 told = self.check(self.path(f"{name}.xml"), "--peak", "0.3")

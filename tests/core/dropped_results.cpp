@@ -2,7 +2,7 @@
 // any one of them. tests/core/CMakeLists.txt
 
 #include "pliant/core/result.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/text.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 #include "pliant/timeline/path.hpp"
 

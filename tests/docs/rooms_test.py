@@ -48,7 +48,7 @@ TREE = {
     "lib/pliant/body/body.hpp": '#include "pliant/shapes/box.hpp"\n#include "pliant/core/core.hpp"\n',
     "cli/CMakeLists.txt": "target_link_libraries(pliant_cli PRIVATE pliant::pliant)\n",
     "cli/main.cpp": '#include <pliant/pliant.hpp>\n#include "pliant/core/core.hpp"\n#include "usage.hpp"\n',
-    "cli/usage.hpp": "",
+    "cli/terminal/usage.hpp": "",
 }
 
 # What is wrong: the file, its text replaced by another, and the only fault that this makes.

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <limits>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/document/text_edit.hpp"
-#include "pliant/output/atomic_file.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
 #include "support/scene_values.hpp"

@@ -6,7 +6,7 @@
 
 #include <tinyxml2.h>
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
 #include "support/places.hpp"

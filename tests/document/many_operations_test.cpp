@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "pliant/document/document.hpp"
-#include "pliant/scene/markup.hpp"
+#include "pliant/scene/text/markup.hpp"
 #include "support/catch.hpp"
 
 namespace pliant::testing {

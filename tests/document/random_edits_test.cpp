@@ -13,8 +13,8 @@
 
 #include "document/random_operation.hpp"
 #include "pliant/document/document.hpp"
-#include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/channels.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "pliant/mesh/subdivision.hpp"
+#include "pliant/mesh/written/subdivision.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"

@@ -82,7 +82,7 @@ std::vector<Run> runs_to_do(std::string_view option) {
 // that those do not use; in the order of their names.
 std::vector<Golden> find_goldens(const fs::path& source) {
   std::vector<Golden> goldens;
-  for (const char* folder : {"examples", "cli/starters", "tests/reference/scenes"}) {
+  for (const char* folder : {"examples", "cli/new/starters", "tests/reference/scenes"}) {
     for (const auto& entry : fs::recursive_directory_iterator(source / folder)) {
       if (entry.path().extension() != ".xml") continue;
       if (entry.path().parent_path().filename() == "parts") continue;  // what scenes include

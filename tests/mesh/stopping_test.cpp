@@ -2,12 +2,12 @@
 
 #include "support/stopping.hpp"
 
-#include "pliant/mesh/binding.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/normals.hpp"
-#include "pliant/mesh/nurbs_surface.hpp"
-#include "pliant/mesh/point_tree.hpp"
+#include "pliant/mesh/triangles/point_tree.hpp"
+#include "pliant/mesh/written/binding.hpp"
+#include "pliant/mesh/written/nurbs_surface.hpp"
 
 using namespace pliant;
 using namespace pliant::testing;

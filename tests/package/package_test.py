@@ -35,7 +35,7 @@ CONTENTS = """
 bin/pliant
 include/pliant/core/result.hpp
 include/pliant/forces/force.hpp
-include/pliant/output/writer.hpp
+include/pliant/files/writer.hpp
 include/pliant/pliant.hpp
 include/pliant/replay/expect_replay.hpp
 include/pliant/timeline/curve.hpp
@@ -48,7 +48,7 @@ lib/cmake/pliant/pliant-config.cmake
 lib/cmake/pliant/pliant-targets.cmake
 lib/libpliant_core.a
 lib/libpliant_forces.a
-lib/libpliant_output.a
+lib/libpliant_files.a
 lib/libpliant_mesh.a
 lib/libpliant_plate.a
 lib/libpliant_replay.a

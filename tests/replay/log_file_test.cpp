@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/replay/log_line.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"

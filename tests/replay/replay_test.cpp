@@ -5,8 +5,8 @@
 #include <locale>
 #include <sstream>
 
-#include "pliant/core/read_file.hpp"
-#include "pliant/output/writer.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/files/writer.hpp"
 #include "pliant/replay/expect_replay.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/scene/read.hpp"

@@ -7,8 +7,9 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/format.hpp"
+#include "pliant/scene/format/format.hpp"
 #include "scene/scene_text.hpp"
+#include "support/scenes.hpp"
 
 namespace pliant::testing {
 namespace {

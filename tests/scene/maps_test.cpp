@@ -1,7 +1,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"

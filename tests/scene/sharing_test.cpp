@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/expand.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/text/text.hpp"
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"
 #include "support/sanitized.hpp"

@@ -9,7 +9,7 @@
 
 #include "pliant/document/document.hpp"
 #include "pliant/document/format_scene.hpp"
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
 #include "support/stopping.hpp"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "pliant/states/state_store.hpp"
 #include "support/caches.hpp"
 #include "support/catch.hpp"

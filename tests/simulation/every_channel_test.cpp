@@ -6,7 +6,7 @@
 
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/format.hpp"
+#include "pliant/scene/format/format.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
 #include "pliant/states/state_key.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/output/formats.hpp"
+#include "pliant/files/formats.hpp"
 #include "pliant/scene/read.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"

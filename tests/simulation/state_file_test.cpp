@@ -1,6 +1,6 @@
 #include "pliant/simulation/state_file.hpp"
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "support/catch.hpp"
 #include "support/moving_scene.hpp"
 #include "support/scratch_folder.hpp"

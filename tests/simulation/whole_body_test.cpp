@@ -1,7 +1,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "support/scenes.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "pliant/mesh/subdivision.hpp"
+#include "pliant/mesh/written/subdivision.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"

@@ -10,7 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "support/catch.hpp"
 #include "support/moving_scene.hpp"
 #include "support/scratch_folder.hpp"

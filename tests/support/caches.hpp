@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "pliant/core/text.hpp"
-#include "pliant/output/formats.hpp"
+#include "pliant/files/formats.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/core/read_file.hpp"
+#include "pliant/files/read_file.hpp"
 
 namespace pliant::testing {
 

@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "pliant/pliant.hpp"
-#include "pliant/scene/description.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant::testing {
 

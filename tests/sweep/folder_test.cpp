@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/sweep/log.hpp"
 #include "pliant/sweep/watch.hpp"
 #include "support/catch.hpp"

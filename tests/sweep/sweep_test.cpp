@@ -9,7 +9,7 @@
 
 #include "pliant/core/shelf.hpp"
 #include "pliant/sampling/shape_shelf.hpp"
-#include "pliant/scene/change_texts.hpp"
+#include "pliant/scene/changes/change_texts.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch_folder.hpp"

@@ -6,8 +6,8 @@
 
 #include "pliant/body/body.hpp"
 #include "pliant/core/run_context.hpp"
-#include "pliant/mesh/point_tree.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/point_tree.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/plate/triangles/triangle_plate.hpp"
 #include "pliant/region/surface/surface_load.hpp"
 

@@ -8,13 +8,13 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/document/draft.hpp"
 #include "pliant/document/editor.hpp"
 #include "pliant/document/object_drafts.hpp"
-#include "pliant/output/atomic_file.hpp"
-#include "pliant/scene/channel_check.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 

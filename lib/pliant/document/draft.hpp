@@ -10,9 +10,9 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/document/text_edit.hpp"
-#include "pliant/scene/element_text.hpp"
-#include "pliant/scene/markup.hpp"
-#include "pliant/scene/tree.hpp"
+#include "pliant/scene/text/element_text.hpp"
+#include "pliant/scene/text/markup.hpp"
+#include "pliant/scene/text/tree.hpp"
 
 namespace pliant::edit {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "pliant/core/text.hpp"
-#include "pliant/scene/curve_text.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/text/text.hpp"
 #include "pliant/timeline/curve_numbers.hpp"
 #include "pliant/timeline/edit/bake_keys.hpp"
 #include "pliant/timeline/edit/edit.hpp"

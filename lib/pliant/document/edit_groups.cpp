@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "pliant/document/editor.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "pliant/document/edit_curves.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/text.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 
 namespace pliant::edit {

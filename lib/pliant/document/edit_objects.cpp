@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "pliant/document/editor.hpp"
-#include "pliant/scene/nearest.hpp"
-#include "pliant/scene/read_elements.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 

@@ -6,7 +6,7 @@
 
 #include "pliant/document/editor.hpp"
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/artist_words.hpp"
-#include "pliant/scene/nearest.hpp"
-#include "pliant/scene/read_elements.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/format/artist_words.hpp"
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 

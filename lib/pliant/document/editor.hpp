@@ -10,7 +10,7 @@
 #include "pliant/document/draft.hpp"
 #include "pliant/document/keyed_curve.hpp"
 #include "pliant/document/operation.hpp"
-#include "pliant/scene/format.hpp"
+#include "pliant/scene/format/format.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant::edit {

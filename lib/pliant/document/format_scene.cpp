@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "pliant/document/draft.hpp"
-#include "pliant/scene/markup.hpp"
 #include "pliant/scene/read.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/text/markup.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant {
 

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/element.hpp"
-#include "pliant/scene/findings.hpp"
-#include "pliant/scene/read_elements.hpp"
-#include "pliant/scene/text.hpp"
-#include "pliant/scene/tree.hpp"
+#include "pliant/scene/reading/element.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/text/findings.hpp"
+#include "pliant/scene/text/text.hpp"
+#include "pliant/scene/text/tree.hpp"
 
 namespace pliant::edit {
 namespace {

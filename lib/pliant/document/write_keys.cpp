@@ -10,8 +10,8 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/document/editor.hpp"
-#include "pliant/scene/curve_text.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
 namespace {

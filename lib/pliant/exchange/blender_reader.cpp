@@ -14,8 +14,8 @@
 #include "pliant/exchange/fit.hpp"
 #include "pliant/exchange/hold.hpp"
 #include "pliant/exchange/pieces.hpp"
-#include "pliant/mesh/file_object.hpp"
-#include "pliant/mesh/json_reader.hpp"
+#include "pliant/files/file_object.hpp"
+#include "pliant/files/json/json_reader.hpp"
 
 namespace pliant::exchange {
 namespace {

@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/exchange/blender.hpp"
 #include "pliant/exchange/gltf_animation.hpp"
 #include "pliant/exchange/maya.hpp"
-#include "pliant/mesh/file_reference.hpp"
-#include "pliant/scene/markup.hpp"
+#include "pliant/files/file_reference.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/scene/text/markup.hpp"
 
 namespace pliant {
 namespace {

@@ -12,10 +12,10 @@
 #include "pliant/exchange/gltf_animation.hpp"
 #include "pliant/exchange/rotation_track.hpp"
 #include "pliant/exchange/single.hpp"
-#include "pliant/mesh/gltf_accessor.hpp"
-#include "pliant/mesh/gltf_buffers.hpp"
-#include "pliant/mesh/gltf_container.hpp"
-#include "pliant/mesh/gltf_document.hpp"
+#include "pliant/files/gltf/gltf_accessor.hpp"
+#include "pliant/files/gltf/gltf_buffers.hpp"
+#include "pliant/files/gltf/gltf_container.hpp"
+#include "pliant/files/gltf/gltf_document.hpp"
 
 namespace pliant::exchange {
 namespace {

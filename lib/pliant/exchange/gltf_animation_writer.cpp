@@ -17,7 +17,7 @@
 #include "pliant/exchange/held_channel.hpp"
 #include "pliant/exchange/rotation_track.hpp"
 #include "pliant/exchange/single.hpp"
-#include "pliant/output/gltf_buffer.hpp"
+#include "pliant/files/gltf/gltf_spool.hpp"
 
 namespace pliant::exchange {
 namespace {

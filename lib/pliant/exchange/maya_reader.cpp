@@ -12,7 +12,7 @@
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/maya.hpp"
 #include "pliant/exchange/maya_units.hpp"
-#include "pliant/mesh/file_object.hpp"
+#include "pliant/files/file_object.hpp"
 #include "pliant/timeline/tangents.hpp"
 
 namespace pliant::exchange {

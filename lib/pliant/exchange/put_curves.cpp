@@ -7,8 +7,8 @@
 #include "pliant/document/document.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/scene_curves.hpp"
-#include "pliant/scene/curve_text.hpp"
-#include "pliant/scene/element_text.hpp"
+#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/text/element_text.hpp"
 
 namespace pliant {
 namespace {

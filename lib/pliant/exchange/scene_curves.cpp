@@ -13,8 +13,8 @@
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/gltf_animation.hpp"
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/description.hpp"
-#include "pliant/scene/nearest.hpp"
+#include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/nearest.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 
 namespace pliant {

@@ -11,7 +11,7 @@
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/surface_body.hpp"
 #include "pliant/core/expects.hpp"
-#include "pliant/mesh/vertex_weights.hpp"
+#include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/region/closed_boxes.hpp"
 #include "pliant/region/placed_nodes.hpp"

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/mesh/triangle_tree.hpp"
-#include "pliant/mesh/triangulate.hpp"
-#include "pliant/mesh/vertex_weights.hpp"
+#include "pliant/mesh/triangles/triangle_tree.hpp"
+#include "pliant/mesh/triangles/triangulate.hpp"
+#include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 
 namespace pliant {

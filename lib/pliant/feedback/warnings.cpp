@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 
 namespace pliant {
 

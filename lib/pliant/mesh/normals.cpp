@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/mesh/equal_numbers.hpp"
+#include "pliant/mesh/triangles/equal_numbers.hpp"
 
 namespace pliant {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <string_view>
 
-#include "pliant/core/line_reader.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/output/atomic_file.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/line_reader.hpp"
 #include "pliant/replay/log.hpp"
 
 namespace pliant {

@@ -11,7 +11,7 @@
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/hash_stream.hpp"
-#include "pliant/mesh/json_reader.hpp"
+#include "pliant/files/json/json_reader.hpp"
 
 namespace pliant::replay {
 namespace {

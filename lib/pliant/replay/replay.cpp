@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/shortened.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/replay/digest.hpp"
 #include "pliant/replay/log_file.hpp"
 #include "pliant/replay/run_header.hpp"

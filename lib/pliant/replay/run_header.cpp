@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash_stream.hpp"
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
-#include "pliant/output/output_place.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/output_place.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/plate/solver_choice.hpp"
-#include "pliant/scene/change.hpp"
+#include "pliant/scene/changes/change.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"

@@ -10,7 +10,7 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/sampling/memory.hpp"
 #include "pliant/sampling/rest_shape.hpp"
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {

@@ -9,8 +9,8 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
+#include "pliant/files/caches/point_cache.hpp"
 #include "pliant/mesh/mesh.hpp"
-#include "pliant/mesh/point_cache.hpp"
 
 namespace pliant {
 

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 
 #include "pliant/body/surface_body.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/material_maps.hpp"
-#include "pliant/scene/description.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant {
 namespace {

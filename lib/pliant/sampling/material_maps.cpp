@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/mesh/npy_grid.hpp"
-#include "pliant/mesh/read_png.hpp"
-#include "pliant/scene/check.hpp"
-#include "pliant/scene/description.hpp"
+#include "pliant/files/npy/npy_grid.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/png/read_png.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant {
 namespace {

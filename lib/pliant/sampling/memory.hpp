@@ -4,8 +4,8 @@
 
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
-#include "pliant/mesh/vertex_weights.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
+#include "pliant/mesh/written/vertex_weights.hpp"
 
 namespace pliant {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/description.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant {
 namespace {

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/rest_shape.hpp"
-#include "pliant/scene/channel_check.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
 
 namespace pliant {
 namespace {

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pliant/scene/artist_words.hpp"
-#include "pliant/scene/description.hpp"
-#include "pliant/scene/nearest.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/format/artist_words.hpp"
+#include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant {
 

@@ -5,10 +5,10 @@
 #include <utility>
 #include <variant>
 
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
-#include "pliant/mesh/read_mesh.hpp"
-#include "pliant/scene/expand.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/files/read_mesh.hpp"
+#include "pliant/scene/text/expand.hpp"
 
 namespace pliant {
 

@@ -10,16 +10,16 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
-#include "pliant/scene/channel_check.hpp"
-#include "pliant/scene/check.hpp"
-#include "pliant/scene/expand.hpp"
-#include "pliant/scene/markup.hpp"
-#include "pliant/scene/nearest.hpp"
-#include "pliant/scene/read_elements.hpp"
-#include "pliant/scene/rules.hpp"
-#include "pliant/scene/tree.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
+#include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/checks/rules.hpp"
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/text/markup.hpp"
+#include "pliant/scene/text/tree.hpp"
 
 namespace pliant {
 

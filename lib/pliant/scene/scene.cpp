@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "pliant/scene/description.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant {
 namespace {

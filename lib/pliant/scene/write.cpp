@@ -11,17 +11,17 @@
 #include <fmt/format.h>
 
 #include "pliant/core/text.hpp"
-#include "pliant/scene/change.hpp"
-#include "pliant/scene/channel_check.hpp"
-#include "pliant/scene/check.hpp"
-#include "pliant/scene/curve_text.hpp"
-#include "pliant/scene/element_text.hpp"
-#include "pliant/scene/findings.hpp"
-#include "pliant/scene/key_text.hpp"
-#include "pliant/scene/markup.hpp"
-#include "pliant/scene/path.hpp"
-#include "pliant/scene/read_elements.hpp"
-#include "pliant/scene/slot.hpp"
+#include "pliant/scene/changes/change.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
+#include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/format/slot.hpp"
+#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/reading/key_text.hpp"
+#include "pliant/scene/reading/path.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/text/element_text.hpp"
+#include "pliant/scene/text/findings.hpp"
+#include "pliant/scene/text/markup.hpp"
 
 namespace pliant {
 

@@ -9,11 +9,11 @@
 #include <fmt/format.h>
 
 #include "pliant/core/stage_timer.hpp"
-#include "pliant/mesh/binding.hpp"
+#include "pliant/mesh/written/binding.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/shape_shelf.hpp"
-#include "pliant/scene/channel_check.hpp"
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
+#include "pliant/scene/checks/check.hpp"
 
 namespace pliant {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/result.hpp"
-#include "pliant/scene/nearest.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/text/text.hpp"
 
 namespace pliant {
 

@@ -17,11 +17,11 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/sampling/sampling.hpp"
-#include "pliant/scene/channel_check.hpp"
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/check.hpp"
-#include "pliant/scene/description.hpp"
-#include "pliant/scene/text.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
+#include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/format/description.hpp"
+#include "pliant/scene/text/text.hpp"
 #include "pliant/simulation/bodies.hpp"
 #include "pliant/timeline/checks.hpp"
 

@@ -8,8 +8,8 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/sampling/animated_shape.hpp"
 #include "pliant/sampling/material_maps.hpp"
-#include "pliant/scene/channel_check.hpp"
-#include "pliant/scene/check.hpp"
+#include "pliant/scene/checks/channel_check.hpp"
+#include "pliant/scene/checks/check.hpp"
 #include "pliant/simulation/bodies.hpp"
 #include "pliant/simulation/player.hpp"
 

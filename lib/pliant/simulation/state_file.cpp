@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "pliant/core/read_file.hpp"
-#include "pliant/output/atomic_file.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/read_file.hpp"
 
 namespace pliant {
 

@@ -17,7 +17,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "pliant/output/atomic_file.hpp"
+#include "pliant/files/atomic_file.hpp"
 
 namespace pliant {
 namespace {

@@ -7,7 +7,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/sampling/sampling.hpp"

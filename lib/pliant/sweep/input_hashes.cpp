@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "pliant/core/hash_stream.hpp"
-#include "pliant/core/open_file.hpp"
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_file.hpp"
 #include "pliant/scene/inputs.hpp"
 
 namespace pliant {

@@ -18,10 +18,10 @@
 #include <unistd.h>
 
 #include "pliant/core/hash.hpp"
-#include "pliant/core/line_reader.hpp"
 #include "pliant/core/shortened.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/mesh/json_reader.hpp"
+#include "pliant/files/json/json_reader.hpp"
+#include "pliant/files/line_reader.hpp"
 #include "pliant/sweep/own_folder.hpp"
 
 namespace pliant {

@@ -11,8 +11,8 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/hash_stream.hpp"
-#include "pliant/output/raw_bytes.hpp"
-#include "pliant/output/row_order.hpp"
+#include "pliant/files/raw_bytes.hpp"
+#include "pliant/files/row_order.hpp"
 
 namespace pliant {
 namespace {

@@ -13,7 +13,7 @@
 #include "pliant/core/shelf.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/output/writer.hpp"
+#include "pliant/files/writer.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/sweep/sweep.hpp"

@@ -8,8 +8,8 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/scene/change.hpp"
-#include "pliant/scene/change_texts.hpp"
+#include "pliant/scene/changes/change.hpp"
+#include "pliant/scene/changes/change_texts.hpp"
 
 namespace pliant {
 namespace {

@@ -13,13 +13,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pliant/core/read_file.hpp"
 #include "pliant/core/shortened.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/mesh/json_reader.hpp"
-#include "pliant/output/atomic_file.hpp"
-#include "pliant/output/writer.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/json/json_reader.hpp"
+#include "pliant/files/read_file.hpp"
+#include "pliant/files/writer.hpp"
 
 namespace pliant {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/scene/changed_values.hpp"
+#include "pliant/scene/changes/changed_values.hpp"
 #include "pliant/sweep/csv.hpp"
 #include "pliant/sweep/sobol.hpp"
 #include "pliant/sweep/values.hpp"

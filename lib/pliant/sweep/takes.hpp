@@ -8,7 +8,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/scene/change.hpp"
+#include "pliant/scene/changes/change.hpp"
 #include "pliant/sweep/text_list.hpp"
 
 namespace pliant {

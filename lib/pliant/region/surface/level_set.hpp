@@ -5,8 +5,8 @@
 
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/force.hpp"
-#include "pliant/mesh/point_tree.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/point_tree.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/region/placed_nodes.hpp"
 
 namespace pliant {

@@ -9,7 +9,7 @@
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/triangle_cells.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
-#include "pliant/mesh/triangle_surface.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/region/selection.hpp"
 #include "pliant/region/surface/level_set.hpp"
 

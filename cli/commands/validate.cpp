@@ -1,0 +1,128 @@
+#include "cli/commands/validate.hpp"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "cli/commands/problem_places.hpp"
+#include "cli/commands/scene_input.hpp"
+#include "cli/terminal/counted.hpp"
+#include "cli/terminal/interrupt.hpp"
+#include "cli/terminal/json.hpp"
+#include "cli/terminal/report.hpp"
+#include "pliant/pliant.hpp"
+
+namespace pliant::cli {
+namespace {
+
+// The results for all scenes, for `--json`.
+struct Findings {
+  Json scenes = Json::array();
+  Json problems = Json::array();
+  ProblemPlaces places;
+};
+
+std::string_view kind_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::InvalidInput:
+      return "invalid";
+    case ErrorCode::Unreadable:
+      return "unreadable";
+    case ErrorCode::OutOfMemory:
+      return "memory";
+    case ErrorCode::Interrupted:
+      return "interrupted";
+    case ErrorCode::Unwritable:
+    case ErrorCode::SolverFailed:
+    case ErrorCode::NotFinite:
+      break;
+  }
+  return "failed";
+}
+
+void add_problem(Findings& findings, const std::string& file, int line, std::string_view kind,
+                 const std::string& message) {
+  const auto place = findings.places.find(file, line, message);
+  const auto of_place = [&](int ProblemPlace::*member) {
+    return place ? Json((*place).*member) : Json(nullptr);
+  };
+  findings.problems.push_back({{"file", file},
+                               {"line", line > 0 ? Json(line) : Json(nullptr)},
+                               {"column", of_place(&ProblemPlace::column)},
+                               {"endLine", of_place(&ProblemPlace::end_line)},
+                               {"endColumn", of_place(&ProblemPlace::end_column)},
+                               {"kind", kind},
+                               {"severity", kind == "note" ? "information" : "error"},
+                               {"message", message}});
+}
+
+// Reports an error of a scene on stderr, or adds it to the findings. Returns the exit code.
+int tell(const Error& error, const std::string& file, Findings* findings) {
+  if (!findings) return report(error);
+  std::vector<Error> all = error.others;
+  all.insert(all.begin(), error);
+  for (const Error& one : all) {
+    add_problem(*findings, one.file.empty() ? file : one.file, one.line, kind_of(one.code),
+                one.message);
+  }
+  return exit_code(error);
+}
+
+// `findings`: receives the results instead of the streams; null: prints them.
+int validate(const std::string& file, const ValidateOptions& options, Findings* findings) {
+  auto scene = read_scene(file, options.root);
+  if (!scene) return tell(scene.error(), file, findings);
+  auto checked = Simulation::check(*scene, simulation_options(options.resources));
+  if (checked) scene->notes.insert(scene->notes.end(), checked->begin(), checked->end());
+  if (!findings) print_notes(scene->notes);
+  if (findings) {
+    for (const SceneNote& note : scene->notes) {
+      add_problem(*findings, note.file, note.line, "note", note.message);
+    }
+  }
+  if (!checked) return tell(checked.error(), file, findings);
+  if (!options.is_quiet && !findings) {
+    print(stdout, fmt::format("{}: valid: {}, {}, frames {} to {}\n", printable(scene->origin.file),
+                              counted(scene->surfaces.size(), "surface"),
+                              counted(scene->forces.size(), "force"), scene->start, scene->end));
+  }
+  return exit_done;
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, ValidateOptions& options) {
+  CLI::App* validate = app.add_subcommand("validate", "Read and check scenes without running them");
+  validate->add_option("SCENE", options.scenes, "Scene files")->required();
+  validate->add_flag("--quiet", options.is_quiet, "Print nothing for valid scenes");
+  add_root(*validate, options.root);
+  validate->add_flag("--json", options.is_json,
+                     "Print all problems as JSON; docs/info.md describes it");
+  add_memory(*validate, options.resources);
+}
+
+int run_validate(const ValidateOptions& options) {
+  catch_interrupts();
+  int worst = exit_done;
+  Findings findings{.places = ProblemPlaces(options.scenes, options.root.value_or(""))};
+  for (const std::string& file : options.scenes) {
+    const int code = validate(file, options, options.is_json ? &findings : nullptr);
+    worst = std::max(worst, code);
+    if (was_interrupted()) {
+      return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
+    }
+    findings.scenes.push_back({{"file", title_of_scene(file)}, {"valid", code == exit_done}});
+  }
+  if (options.is_json) {
+    const Json json = {{"format", "pliant-validate-1"},
+                       {"scenes", std::move(findings.scenes)},
+                       {"problems", std::move(findings.problems)}};
+    print(stdout, json.dump(2, ' ', true, Json::error_handler_t::replace) + '\n');
+  }
+  return worst;
+}
+
+}  // namespace pliant::cli

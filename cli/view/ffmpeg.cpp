@@ -1,0 +1,104 @@
+#include "cli/view/ffmpeg.hpp"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <fstream>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include "cli/terminal/interrupt.hpp"
+
+namespace pliant::cli {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* program = "ffmpeg";
+constexpr auto poll_pause = 20ms;
+
+tl::unexpected<Error> missing(const std::string& reason) {
+  return fail(
+      ErrorCode::Unwritable,
+      fmt::format("--movie needs ffmpeg to write the movie (Debian package ffmpeg): {}", reason));
+}
+
+}  // namespace
+
+Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const ScratchFolder& folder) {
+  std::vector<std::string> all = {program, "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
+  all.insert(all.end(), words.begin(), words.end());
+  const std::string log = folder.path() + "/log";
+  const int messages = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  int ends[2];
+  if (messages < 0 || pipe2(ends, O_CLOEXEC) != 0) {
+    const int error = errno;
+    if (messages >= 0) close(messages);
+    return missing(std::strerror(error));
+  }
+  auto kept = KeptProgram::start(std::move(all), {.input = ends[0], .errors = messages}, folder);
+  close(messages);
+  close(ends[0]);
+  if (!kept) {
+    close(ends[1]);
+    return missing(kept.error().message);
+  }
+  fcntl(ends[1], F_SETFL, fcntl(ends[1], F_GETFL) | O_NONBLOCK);
+  return Ffmpeg(*std::move(kept), ends[1], log);
+}
+
+Ffmpeg::Ffmpeg(Ffmpeg&& other) noexcept
+    : program_(std::move(other.program_)),
+      input_(std::exchange(other.input_, -1)),
+      log_(std::move(other.log_)) {}
+
+Ffmpeg::~Ffmpeg() { close_input(); }
+
+void Ffmpeg::close_input() {
+  if (input_ >= 0) close(input_);
+  input_ = -1;
+}
+
+Result<void> Ffmpeg::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    if (was_interrupted()) return interrupted();
+    pollfd ready = {input_, POLLOUT, 0};
+    if (poll(&ready, 1, static_cast<int>(std::chrono::milliseconds(100).count())) <= 0) continue;
+    const ssize_t written = ::write(input_, bytes.data(), bytes.size());
+    if (written > 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    } else if (errno != EAGAIN && errno != EINTR) {
+      return failure();
+    }
+  }
+  return {};
+}
+
+Result<void> Ffmpeg::finish() {
+  close_input();
+  for (;;) {
+    if (const auto code = program_.code()) return *code == 0 ? Result<void>() : failure();
+    if (was_interrupted()) return interrupted();
+    std::this_thread::sleep_for(poll_pause);
+  }
+}
+
+// The first line of its log, or the beginning of it: later ones are consequences.
+tl::unexpected<Error> Ffmpeg::failure() const {
+  std::ifstream file(log_);
+  constexpr std::size_t longest = 300;
+  std::array<char, longest + 1> bytes = {};
+  file.getline(bytes.data(), bytes.size());
+  const std::string_view line = bytes.data();
+  return fail(ErrorCode::Unwritable,
+              fmt::format("ffmpeg could not write the movie: {}",
+                          line.empty() ? "it gave no reason" : printable(line)));
+}
+
+}  // namespace pliant::cli

@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/core/expects.hpp"
+#include "pliant/core/hash_stream.hpp"
+#include "pliant/core/text.hpp"
+#include "pliant/files/atomic_file.hpp"
+#include "pliant/files/byte_sink.hpp"
+#include "pliant/files/formats.hpp"
+#include "pliant/files/gltf/gltf_numbers.hpp"
+#include "pliant/files/gltf/gltf_spool.hpp"
+#include "pliant/files/gltf/gltf_surface.hpp"
+#include "pliant/files/open_folder.hpp"
+#include "pliant/files/output_place.hpp"
+#include "pliant/files/single_precision.hpp"
+#include "pliant/files/spool_file.hpp"
+
+namespace pliant {
+namespace {
+
+using Json = GltfBuffer::Json;
+
+constexpr std::uint64_t most_glb_bytes = std::numeric_limits<std::uint32_t>::max();
+
+// A file name as a URI reference in JSON: RFC 3986 requires all other characters to be escaped.
+std::string to_uri(const std::string& name) {
+  std::string uri;
+  for (const char c : name) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') || c == '-' || c == '.' || c == '_' || c == '~';
+    uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri;
+}
+
+void append_number(std::string& bytes, std::uint32_t number) {
+  for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
+}
+
+// The materials named by faces, and one without a name for faces without one. Sheets are visible
+// from both sides.
+class Materials {
+ public:
+  std::size_t index_of(const std::string& name) {
+    const auto [place, is_new] = numbers_.try_emplace(name, names_.size());
+    if (is_new) names_.push_back(name);
+    return place->second;
+  }
+
+  Json json() const {
+    Json materials = Json::array();
+    for (const std::string& name : names_) {
+      Json material = Json::object();
+      if (!name.empty()) material["name"] = name;
+      material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0.7}};
+      material["doubleSided"] = true;
+      materials.push_back(std::move(material));
+    }
+    return materials;
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::map<std::string, std::size_t> numbers_;  // of the names
+};
+
+class GltfWriter final : public AnimationWriter {
+ public:
+  GltfWriter(const AnimationPlan& plan, std::optional<AtomicFile> separate,
+             std::optional<SpoolFile> spool)
+      : file_(plan.file),
+        is_placed_(plan.is_placed),
+        separate_(std::move(separate)),
+        spool_(std::move(spool)),
+        should_stop_(plan.should_stop),
+        buffer_(
+            [this](std::string_view bytes) {
+              return write_in_pieces(bytes, should_stop_,
+                                     [this](std::string_view piece) { return take(piece); });
+            },
+            should_stop_) {
+    for (int k = 0; k < plan.frame_count(); ++k) times_.push_back(static_cast<float>(k / plan.fps));
+  }
+
+  Result<void> begin(const AnimationPlan& plan) {
+    for (const AnimatedSurface& surface : plan.surfaces) {
+      auto made = GltfSurface::make(surface, is_placed_, should_stop_);
+      if (!made) return fail(made.error());
+      surfaces_.push_back(*std::move(made));
+      if (auto begun = surfaces_.back().begin(surface.rest, plan.first_frame, buffer_); !begun)
+        return begun;
+    }
+    return {};
+  }
+
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
+    PLIANT_EXPECTS(surfaces.size() == surfaces_.size());
+    for (std::size_t k = 0; k < surfaces.size(); ++k) {
+      if (auto added = surfaces_[k].add(surfaces[k], frame, buffer_); !added) return added;
+    }
+    return {};
+  }
+
+  Result<void> finish() override {
+    const auto json = document();
+    if (!json) return fail(json.error());
+    // Bytes in a name that are not UTF-8 become a replacement character.
+    const std::string text = json->dump(-1, ' ', false, Json::error_handler_t::replace);
+    return separate_ ? write_gltf(text) : write_glb(text);
+  }
+
+ private:
+  Result<void> take(std::string_view bytes) {
+    if (separate_) {
+      separate_hash_.add(bytes);
+      return separate_->write(bytes);
+    }
+    if (spool_->size() + bytes.size() > most_glb_bytes) return too_large();
+    return spool_->write(bytes);
+  }
+
+  tl::unexpected<Error> too_large() const {
+    return fail(ErrorCode::Unwritable,
+                "the animation is larger than the 4 GiB that a .glb can store; .gltf, .usda, .pc2, "
+                ".mdd and .npy can store more",
+                file_.string());
+  }
+
+  Result<Json> document() {
+    Json root = {{"asset", {{"version", "2.0"}, {"generator", "pliant"}}}, {"scene", 0}};
+    Json scene = {{"nodes", Json::array()}};
+    Json nodes = Json::array(), meshes = Json::array();
+    Materials materials;
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      scene["nodes"].push_back(k);
+      nodes.push_back(surfaces_[k].node(k));
+      meshes.push_back(
+          surfaces_[k].mesh([&](const std::string& name) { return materials.index_of(name); }));
+    }
+    const bool is_animated =
+        std::any_of(surfaces_.begin(), surfaces_.end(),
+                    [](const GltfSurface& surface) { return surface.is_animated(); });
+    if (is_animated) {
+      auto animation = make_animation();
+      if (!animation) return fail(animation.error());
+      root["animations"] = Json::array({*std::move(animation)});
+    }
+    root["scenes"] = Json::array({std::move(scene)});
+    root["nodes"] = std::move(nodes);
+    root["meshes"] = std::move(meshes);
+    root["materials"] = materials.json();
+    root["accessors"] = buffer_.accessors();
+    root["bufferViews"] = buffer_.views();
+    Json buffer = {{"byteLength", buffer_.size()}};
+    if (separate_) buffer["uri"] = to_uri(separate_name().filename().string());
+    root["buffers"] = Json::array({std::move(buffer)});
+    return root;
+  }
+
+  Result<Json> make_animation() {
+    Json animation = {{"name", "bake"}, {"channels", Json::array()}, {"samplers", Json::array()}};
+    const auto times = buffer_.add_keys(times_, 1, GltfBuffer::Bounds::Written);
+    if (!times) return fail(times.error());
+    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+      if (auto animated = surfaces_[k].animate(k, *times, buffer_, animation); !animated)
+        return fail(animated.error());
+    }
+    return animation;
+  }
+
+  // Requires: all numbers are written.
+  std::filesystem::path separate_name() const { return numbers_file(file_, separate_hash_.hash()); }
+
+  // The numbers first, under a name of their own: an older .gltf keeps its numbers until the new
+  // one replaces it, in one step.
+  Result<void> write_gltf(const std::string& text) {
+    auto file = AtomicFile::create(file_);
+    if (!file) return fail(file.error());
+    if (auto written = file->write(text); !written) return written;
+    // Another bake with this name must not change the .gltf between our look at it and our rename.
+    const OpenFolder folder(file_);
+    folder.lock();
+    std::vector<std::filesystem::path> unused = numbers_named_by(file_);
+    const std::filesystem::path numbers = separate_name();
+    std::error_code unknown;
+    const bool is_own = !std::filesystem::exists(numbers, unknown) && !unknown;
+    auto committed = separate_->commit_as(numbers);
+    if (committed) {
+      committed = file->commit();
+      if (!committed && is_own) unused.push_back(numbers);
+    }
+    remove_unnamed_numbers(file_, std::move(unused));
+    return committed;
+  }
+
+  // glTF 2.0, 4.4: a header, a chunk of JSON padded with spaces, a chunk of numbers.
+  Result<void> write_glb(std::string text) {
+    text.append((4 - text.size() % 4) % 4, ' ');
+    const std::uint64_t length = 12 + 8 + text.size() + 8 + spool_->size();
+    if (length > most_glb_bytes) return too_large();
+    std::string head = "glTF";
+    append_number(head, 2);
+    append_number(head, static_cast<std::uint32_t>(length));
+    append_number(head, static_cast<std::uint32_t>(text.size()));
+    head += "JSON" + text;
+    append_number(head, static_cast<std::uint32_t>(spool_->size()));
+    head.append("BIN\0", 4);
+    auto file = AtomicFile::create(file_);
+    if (!file) return fail(file.error());
+    if (auto written = file->write(head); !written) return written;
+    if (auto copied = spool_->copy_to(*file, should_stop_); !copied) return copied;
+    return file->commit();
+  }
+
+  std::filesystem::path file_;
+  bool is_placed_;
+  std::optional<AtomicFile> separate_;  // the numbers of a .gltf
+  HashStream separate_hash_;            // of the bytes in `separate_`
+  std::optional<SpoolFile> spool_;      // the numbers of a .glb until they can be written
+  StopRequest should_stop_;
+  GltfBuffer buffer_;
+  std::vector<GltfSurface> surfaces_;
+  std::vector<float> times_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& plan) {
+  if (plan.frame_count() > most_gltf_frames) {
+    return fail(ErrorCode::InvalidInput,
+                fmt::format("{}: glTF stores a weight of each frame at each frame, which is too "
+                            "much for {} frames; at most {} are allowed; use .usda, .pc2, .mdd or "
+                            ".npy, or choose fewer frames with --frames",
+                            plan.file, plan.frame_count(), most_gltf_frames));
+  }
+  if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());
+  const bool is_separate = ending_of(plan.file) == ".gltf";
+  if (is_separate) {
+    if (auto place = check_output_place(numbers_file(plan.file, {})); !place)
+      return fail(place.error());
+  }
+  // An unwritable file must be reported before a long run.
+  if (auto probe = AtomicFile::create(plan.file); !probe) return fail(probe.error());
+  std::optional<AtomicFile> separate;
+  std::optional<SpoolFile> spool;
+  if (is_separate) {
+    auto file = AtomicFile::create(plan.file);  // its name is known only at the end
+    if (!file) return fail(file.error());
+    separate.emplace(*std::move(file));
+  } else {
+    auto file = SpoolFile::create(plan.file);
+    if (!file) return fail(file.error());
+    spool.emplace(*std::move(file));
+  }
+  auto writer = std::make_unique<GltfWriter>(plan, std::move(separate), std::move(spool));
+  if (auto begun = writer->begin(plan); !begun) return fail(begun.error());
+  return writer;
+}
+
+}  // namespace pliant

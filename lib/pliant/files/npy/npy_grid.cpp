@@ -1,0 +1,56 @@
+#include "pliant/files/npy/npy_grid.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/files/npy/npy_header.hpp"
+
+namespace pliant {
+namespace {
+
+double number_in_npy(std::string_view bytes, const NpyHeader& header) {
+  std::uint64_t bits = 0;
+  for (std::size_t k = 0; k < bytes.size(); ++k) {
+    const std::size_t place = header.is_big_endian ? k : bytes.size() - 1 - k;
+    bits = bits << 8 | static_cast<unsigned char>(bytes[place]);
+  }
+  if (header.is_double) return std::bit_cast<double>(bits);
+  return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+}
+
+}  // namespace
+
+Result<std::vector<double>> parse_npy_grid(std::string_view bytes, const std::string& name,
+                                           int columns, int rows, const StopRequest& should_stop) {
+  constexpr std::size_t parts_of_number = 16;
+  const auto refuse = [&](std::string message) {
+    return fail(ErrorCode::InvalidInput, std::move(message), name);
+  };
+  const auto header = read_npy_header(bytes, bytes.size());
+  if (!header) return refuse(header.error().message);
+  const auto width = static_cast<std::uint64_t>(columns), height = static_cast<std::uint64_t>(rows);
+  if (header->shape != std::vector<std::uint64_t>{height, width})
+    return refuse(fmt::format("its shape is {}, but the grid's is ({}, {}): rows, columns",
+                              header->shape_text, rows, columns));
+  const std::size_t count = static_cast<std::size_t>(width * height), size = header->number_size();
+  const std::string_view numbers = bytes.substr(static_cast<std::size_t>(header->begin));
+  if (numbers.size() / size < count)
+    return refuse(fmt::format("it is truncated: it promises {} numbers, but has {}", count,
+                              numbers.size() / size));
+  std::vector<double> values(count);
+  StopPoll poll(should_stop);
+  for (std::size_t k = 0; k < count; ++k) {
+    if (poll.after(parts_of_number)) return interrupted();
+    values[k] = number_in_npy(numbers.substr(k * size, size), *header);
+    if (!std::isfinite(values[k]))
+      return refuse(fmt::format("the number in row {}, column {} is {}, which is not finite",
+                                k / width, k % width, values[k]));
+  }
+  return values;
+}
+
+}  // namespace pliant

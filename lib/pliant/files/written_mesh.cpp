@@ -1,0 +1,14 @@
+#include "pliant/files/written_mesh.hpp"
+
+namespace pliant {
+
+const Mesh& WrittenMesh::in_space(bool is_mirrored) {
+  if (!is_mirrored) return *mesh_;
+  if (!turned_) {
+    turned_ = std::make_unique<Mesh>(*mesh_);
+    turn_faces(*turned_);
+  }
+  return *turned_;
+}
+
+}  // namespace pliant

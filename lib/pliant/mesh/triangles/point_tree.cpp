@@ -1,0 +1,55 @@
+#include "pliant/mesh/triangles/point_tree.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "pliant/core/stoppable_sort.hpp"
+
+namespace pliant {
+
+Result<PointTree> PointTree::make(const Field& points, const StopRequest& should_stop) {
+  PointTree tree;
+  if (points.rows() == 0) return tree;
+  StopPoll poll(should_stop);
+  std::vector<int>& rows = tree.rows_;
+  std::vector<Part>& parts = tree.parts_;
+  rows.resize(static_cast<std::size_t>(points.rows()));
+  std::iota(rows.begin(), rows.end(), 0);
+  parts.push_back({.first = 0, .count = static_cast<int>(rows.size())});
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    Part part = parts[k];
+    const auto begin = rows.begin() + part.first, end = begin + part.count;
+    part.low = part.high = points.row(*begin).transpose();
+    for (auto row = begin; row != end; ++row) {
+      if (poll.after(4)) return interrupted();
+      for (int axis = 0; axis < 3; ++axis) {
+        part.low[axis] = std::min(part.low[axis], points(*row, axis));
+        part.high[axis] = std::max(part.high[axis], points(*row, axis));
+      }
+    }
+    if (part.count > leaf_size) {
+      int widest = 0;
+      const Vector3d extent = part.high - part.low;
+      for (int axis = 1; axis < 3; ++axis) widest = extent[axis] > extent[widest] ? axis : widest;
+      const int half = part.count / 2;
+      const auto place = [&](int row) { return std::pair(points(row, widest), row); };
+      if (!select_unless_stopped(begin, begin + half, end, poll,
+                                 [&](int a, int b) { return place(a) < place(b); })) {
+        return interrupted();
+      }
+      part.child = static_cast<int>(parts.size());
+      parts.push_back({.first = part.first, .count = half});
+      parts.push_back({.first = part.first + half, .count = part.count - half});
+    }
+    parts[k] = part;
+  }
+  tree.points_.resize(points.rows(), 3);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (poll.after(4)) return interrupted();
+    tree.points_.row(static_cast<Eigen::Index>(k)) = points.row(rows[k]);
+  }
+  return tree;
+}
+
+}  // namespace pliant

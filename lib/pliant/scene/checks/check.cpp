@@ -1,0 +1,43 @@
+#include "pliant/scene/checks/check.hpp"
+
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/checks/rules.hpp"
+#include "pliant/scene/format/description.hpp"
+#include "pliant/scene/text/findings.hpp"
+
+namespace pliant {
+bool is_name(std::string_view text) {
+  const auto is_first = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  const auto is_later = [&](char c) { return is_first(c) || c == '-' || (c >= '0' && c <= '9'); };
+  return !text.empty() && text.size() <= longest_object_name && is_first(text.front()) &&
+         std::all_of(text.begin(), text.end(), is_later);
+}
+
+Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
+                      const std::string& attribute) {
+  return origin.located(
+      {.code = ErrorCode::Unreadable,
+       .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message)},
+      origin.line_of(surface, attribute));
+}
+
+std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop) {
+  std::vector<xml::Named> named;
+  const auto add = [&](std::string_view element, const std::string& name) {
+    named.push_back({element, name, scene.origin.line_of(name, "name")});
+  };
+  for (const Surface& surface : scene.surfaces) add(Description<Surface>::element, surface.name);
+  for (const Force& force : scene.forces) add(kind_of(force), force.name);
+  for (const Group& group : scene.groups) add(Description<Group>::element, group.name);
+  xml::Findings findings(scene.origin, should_stop);
+  xml::check_whole(scene, named, {}, findings);
+  return findings.problems();
+}
+
+}  // namespace pliant

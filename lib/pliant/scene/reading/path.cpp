@@ -1,0 +1,109 @@
+#include "pliant/scene/reading/path.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/reading/read_elements.hpp"
+
+namespace pliant::xml {
+namespace {
+
+bool is_position(const Slot& row) { return std::holds_alternative<PositionChannel*>(row.place); }
+
+/// The waypoints in the order of the file, with their lines.
+struct Waypoints {
+  std::vector<Value<3>> places;
+  std::vector<int> lines;
+};
+
+void read_waypoint(const Element& element, Waypoints& waypoints, Findings& findings) {
+  Waypoint waypoint;
+  Table table = table_of(waypoint);
+  read_attributes(element, table, findings);
+  read_children(element, {}, findings);
+  waypoints.places.push_back(waypoint.at);
+  waypoints.lines.push_back(element.line());
+}
+
+/// The row of the position that `attribute` names, marked as animated; null if there is none, which
+/// is a problem.
+Slot* find_position(const Element& element, std::span<Slot> rows, Findings& findings) {
+  const std::optional<GivenAttribute> given = element.attribute("attribute");
+  if (!given || is_unknown(*given)) return nullptr;  // reported with the other attributes
+  const std::string name(trimmed(given->value));
+  Slot* row = find(rows, name);
+  if (!row || !is_position(*row)) {
+    std::vector<std::string_view> positions;
+    for (const Slot& candidate : rows)
+      if (is_position(candidate)) positions.push_back(candidate.attribute.name);
+    const std::string parent = tag(element.parent());
+    findings.add_problem(
+        given->line,
+        value_problem(
+            element, "attribute", name,
+            row ? fmt::format("is not a position; the positions of {} are: {}", parent,
+                              positions.empty() ? "none" : listed(positions))
+                : fmt::format("{} has no such position{}", parent, hint(name, positions))));
+    return nullptr;
+  }
+  if (row->line != 0)
+    findings.add_problem(element.line(),
+                         value_problem(element, "attribute", name,
+                                       fmt::format("is already {} ({}); remove one of them",
+                                                   row->is_animated ? "animated" : "given",
+                                                   findings.title_of(row->line, element.line()))));
+  else
+    row->line = element.line();
+  row->is_animated = true;
+  return row;
+}
+
+std::optional<Path> make_path(const Element& element, Waypoints waypoints, bool is_closed,
+                              Findings& findings) {
+  auto path = Path::make(std::move(waypoints.places), is_closed);
+  if (path) return std::move(*path);
+  const PathError& error = path.error();
+  if (error.waypoint < waypoints.lines.size())
+    findings.add_problem(waypoints.lines[error.waypoint],
+                         fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
+  else
+    findings.add_problem(element.line(), fmt::format("{} has {} waypoints; {}", tag(element),
+                                                     error.waypoint, error.message));
+  return std::nullopt;
+}
+
+}  // namespace
+
+void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
+               SceneFile& file) {
+  const std::size_t problems = file.findings.problem_count();
+  PathText text;
+  Table table = table_of(text);
+  read_attributes(element, table, file.findings);
+  Slot* position = find_position(element, rows, file.findings);
+  const std::string path_name =
+      fmt::format("{}.{}", owner, position ? position->attribute.name : std::string_view("path"));
+  Waypoints waypoints;
+  const Child children[] = {
+      {"waypoint", [&](const Element& child) { read_waypoint(child, waypoints, file.findings); }},
+      {"animate",
+       [&](const Element& child) { read_animate(child, table, path_name, file.findings); }},
+  };
+  read_children(element, children, file.findings);
+  std::optional<Path> path;
+  if (file.findings.problem_count() == problems)
+    path = make_path(element, std::move(waypoints), text.is_closed, file.findings);
+  if (!position) return;
+  position->is_sound = position->is_sound && path.has_value();
+  if (path)
+    *std::get<PositionChannel*>(position->place) =
+        PathMotion{std::move(*path), std::move(text.progress)};
+  if (!owner.empty()) record(path_name, table, file);
+}
+
+}  // namespace pliant::xml
