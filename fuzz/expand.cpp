@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "pliant/scene/reading/scene_file.hpp"
+#include "pliant/scene/elements/scene_file.hpp"
 #include "pliant/scene/text/arithmetic.hpp"
 
 using namespace pliant;

@@ -121,7 +121,7 @@ TEST_CASE("every problem of a map is told with its line", "[scene][maps]") {
        "a.xml:5: error: <map> has no attribute \"lo\"; did you mean \"low\"?"},
       {R"(<map channel="b" file="a.png"><key/></map>)", "a.xml:5: error: <map> has no element"},
       {"<map channel=\"b\" file=\"a.png\"/>\n<map channel=\"b\" file=\"b.png\"/>",
-       "a.xml:6: error: <surface> \"s\" has a second map of b; a channel has one"}};
+       "a.xml:6: error: <material> has a second <map> of b; the first is at line 5"}};
   for (const auto& [map, line] : all) {
     CAPTURE(map);
     std::string lines;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "pliant/core/text.hpp"
-#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/elements/curve_text.hpp"
 #include "pliant/scene/text/text.hpp"
 #include "pliant/timeline/curve_numbers.hpp"
 #include "pliant/timeline/edit/bake_keys.hpp"

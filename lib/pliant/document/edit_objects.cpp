@@ -6,7 +6,7 @@
 
 #include "pliant/document/editor.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/format/description.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
@@ -30,25 +30,24 @@ std::optional<std::string> without(std::string_view names,
 }  // namespace
 
 Result<void> Editor::operator()(const Add& addition) {
-  const bool is_surface = addition.kind == "surface";
-  const bool is_group = addition.kind == "group";
-  const std::vector<Force> kinds = xml::force_kinds();
-  const bool is_force =
-      std::ranges::any_of(kinds, [&](const Force& kind) { return kind_of(kind) == addition.kind; });
-  if (!is_surface && !is_group && !is_force) {
-    std::vector<std::string_view> known = {"surface", "group"};
-    for (const Force& kind : kinds) known.push_back(kind_of(kind));
+  std::vector<std::string_view> known;
+  for (const ChildFormat& child : format_of(draft_.name(Draft::root)).children)
+    known.insert(known.end(), child.names.begin(), child.names.end());
+  if (std::ranges::find(known, addition.kind) == known.end())
     return draft_.refuse(
         fmt::format("no kind {}{}", in_quotes(addition.kind), xml::hint(addition.kind, known)));
-  }
-  if (!addition.group.empty() && !is_force)
+  if (!addition.group.empty() && !is_force(addition.kind))
     return draft_.refuse(fmt::format("a <{}> cannot be in a group", addition.kind));
 
   xml::ElementText element{.name = addition.kind, .attributes = {{"name", addition.name}}};
-  if (is_surface) {
-    std::vector<std::string> parts = {"surface",  addition.shape, "transform",
-                                      "material", "tangents",     "solver"};
-    element.children.push_back({.name = addition.shape});
+  const ElementFormat& format = format_of(addition.kind);
+  std::vector<std::string> parts = {addition.kind};
+  for (const ChildFormat& child : format.children) {
+    if (child.is_choice()) element.children.push_back({.name = addition.shape});
+    if (child.is_choice()) parts.push_back(addition.shape);
+    if (child.is_part) parts.emplace_back(child.names.front());
+  }
+  if (parts.size() > 1) {
     for (const Given& given : addition.attributes) {
       const auto part = std::ranges::find_if(parts, [&](const std::string& one) {
         return find_attribute(one, given.first) != nullptr;
@@ -82,8 +81,9 @@ Result<void> Editor::operator()(const Add& addition) {
     place.parent = *group;
   }
   // Surfaces stand behind surfaces, if there are some; all else at the end.
+  const bool is_surface = addition.kind == Description<Surface>::element;
   for (const Element child : draft_.children(place.parent))
-    if (!is_surface || draft_.name(child) == "surface") place.after = child;
+    if (!is_surface || draft_.name(child) == addition.kind) place.after = child;
   draft_.insert(element, place);
   parts_.insert(addition.name);
   return {};

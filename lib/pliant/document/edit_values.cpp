@@ -108,12 +108,14 @@ Result<void> Editor::insert_part(const Spot& spot, const xml::ElementText& part)
         fmt::format("the <{}> of {} does not stand in this file, but in {}:{}; edit that file",
                     part.name, xml::in_quotes(name), at.file, at.line));
   }
-  constexpr std::string_view order[] = {"grid",      "mesh",     "nurbs",    "subdivision",
-                                        "transform", "material", "tangents", "solver"};
+  std::vector<std::string_view> before;
+  for (const ChildFormat& child : format_of(draft_.name(spot.object)).children) {
+    if (child.names.front() == part.name) break;
+    before.insert(before.end(), child.names.begin(), child.names.end());
+  }
   Draft::Place place{.parent = spot.object};
-  const auto* const own = std::ranges::find(order, part.name);
   for (const Element child : draft_.children(spot.object))
-    if (std::ranges::find(order, draft_.name(child)) < own) place.after = child;
+    if (std::ranges::find(before, draft_.name(child)) != before.end()) place.after = child;
   draft_.insert(part, place);
   return {};
 }
@@ -185,11 +187,13 @@ Result<void> Editor::operator()(const Freeze& freeze) {
 Result<void> Editor::operator()(const SetPart& set) {
   const auto object = this->object(set.surface);
   if (!object) return fail(object.error());
-  if (draft_.name(*object) != "surface")
+  if (draft_.name(*object) != Description<Surface>::element)
     return draft_.refuse(
         fmt::format("{} is no surface, so it has no parts", xml::in_quotes(set.surface)));
-  constexpr std::string_view allowed[] = {"transform", "material", "tangents", "solver"};
-  if (std::ranges::find(allowed, set.part) == std::end(allowed))
+  std::vector<std::string_view> allowed;
+  for (const ChildFormat& child : format_of(draft_.name(*object)).children)
+    if (child.is_part) allowed.push_back(child.names.front());
+  if (std::ranges::find(allowed, set.part) == allowed.end())
     return draft_.refuse(fmt::format("{} is no part that can be set; allowed: {}",
                                      xml::in_quotes(set.part), fmt::join(allowed, ", ")));
   if (set.comment.find("--") != std::string::npos || set.comment.ends_with('-'))

@@ -6,7 +6,6 @@
 
 #include "pliant/scene/format/artist_words.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
@@ -21,11 +20,6 @@ bool has_components(const AttributeFormat& format) {
   return format.type == "vector" || format.type == "number or vector";
 }
 
-const std::vector<ElementFormat>& all_formats() {
-  static const std::vector<ElementFormat> formats = scene_format();
-  return formats;
-}
-
 std::string hint_of(std::string_view word, const std::vector<std::string>& known) {
   const std::vector<std::string_view> words(known.begin(), known.end());
   return xml::hint(word, words);
@@ -33,8 +27,9 @@ std::string hint_of(std::string_view word, const std::vector<std::string>& known
 
 }  // namespace
 
-Editor::Editor(Draft& draft, const Scene& scene, ParseScene parse)
-    : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(all_formats()) {}
+Editor::Editor(Draft& draft, const Scene& scene, ParseScene parse,
+               const std::vector<ElementFormat>& formats)
+    : draft_(draft), scene_(scene), parse_(std::move(parse)), formats_(formats) {}
 
 Result<void> Editor::apply(const Operation& operation) {
   if (auto done = std::visit([&](const auto& one) { return (*this)(one); }, operation); !done)
@@ -77,10 +72,16 @@ Result<Element> Editor::object(std::string_view name) const {
                                    hint_of(name, names)));
 }
 
+/// Whether it is an element with a name that may stand in a group.
+bool Editor::is_force(std::string_view element) const {
+  const std::vector<std::string_view>& parents = format_of(element).parents;
+  const AttributeFormat* const name = find_attribute(element, "name");
+  return name && name->type == "name" &&
+         std::ranges::find(parents, Description<pliant::Group>::element) != parents.end();
+}
+
 bool Editor::is_force(Element element) const {
-  static const std::vector<Force> kinds = xml::force_kinds();
-  return std::ranges::any_of(
-      kinds, [&](const Force& kind) { return kind_of(kind) == draft_.name(element); });
+  return is_force(draft_.name(element));
 }
 
 Result<Element> Editor::force(std::string_view name) const {
@@ -111,8 +112,8 @@ std::set<std::string> Editor::taken_names() const {
 
 const ElementFormat& Editor::format_of(std::string_view element) const {
   static const ElementFormat none;
-  const auto found = std::ranges::find(formats_, element, &ElementFormat::name);
-  return found != formats_.end() ? *found : none;
+  const ElementFormat* const found = find_format(formats_, element);
+  return found ? *found : none;
 }
 
 const AttributeFormat* Editor::find_attribute(std::string_view element,
@@ -122,14 +123,15 @@ const AttributeFormat* Editor::find_attribute(std::string_view element,
   return found != attributes.end() ? &*found : nullptr;
 }
 
-/// The elements whose attributes an object has: its own, and the parts of a surface.
+/// The elements whose attributes an object has: its own, its parts, and of several kinds of which
+/// one stands there the one that does.
 std::vector<std::string> Editor::parts_of(Element object) const {
   std::vector<std::string> parts{std::string(draft_.name(object))};
-  if (draft_.name(object) != "surface") return parts;
-  for (const char* const shape : {"grid", "mesh", "nurbs", "subdivision"})
-    if (!draft_.children(object, shape).empty()) parts.emplace_back(shape);
-  for (const char* const part : {"transform", "material", "tangents", "solver"})
-    parts.emplace_back(part);
+  for (const ChildFormat& child : format_of(draft_.name(object)).children) {
+    for (const std::string_view name : child.names)
+      if (child.is_part || (child.is_choice() && !draft_.children(object, name).empty()))
+        parts.emplace_back(name);
+  }
   return parts;
 }
 

@@ -32,7 +32,8 @@ struct Spot {
 class Editor {
  public:
   /// `scene`: that of the draft's text before the first operation. `parse`: makes that of a text.
-  Editor(Draft& draft, const Scene& scene, ParseScene parse);
+  Editor(Draft& draft, const Scene& scene, ParseScene parse,
+         const std::vector<ElementFormat>& formats = scene_format());
 
   Result<void> apply(const Operation& operation);
 
@@ -73,6 +74,7 @@ class Editor {
   using NamedElement = std::pair<std::string, Element>;
   std::vector<NamedElement> objects() const;
   Result<Element> object(std::string_view name) const;
+  bool is_force(std::string_view element) const;
   bool is_force(Element element) const;
   std::string name_of(Element element) const;
   std::string free_name(const std::string& like, std::set<std::string>& taken) const;

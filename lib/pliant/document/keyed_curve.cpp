@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "pliant/scene/channels.hpp"
-#include "pliant/scene/reading/element.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/elements/element.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/text/findings.hpp"
 #include "pliant/scene/text/text.hpp"
 #include "pliant/scene/text/tree.hpp"

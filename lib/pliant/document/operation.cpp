@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/elements/curve_text.hpp"
 
 namespace pliant {
 

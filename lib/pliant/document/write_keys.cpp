@@ -10,7 +10,7 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/document/editor.hpp"
-#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/elements/curve_text.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {

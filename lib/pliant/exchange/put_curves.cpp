@@ -7,7 +7,7 @@
 #include "pliant/document/document.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/scene_curves.hpp"
-#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/elements/curve_text.hpp"
 #include "pliant/scene/text/element_text.hpp"
 
 namespace pliant {

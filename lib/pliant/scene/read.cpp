@@ -15,8 +15,8 @@
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/checks/rules.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 #include "pliant/scene/text/expand.hpp"
 #include "pliant/scene/text/markup.hpp"
 #include "pliant/scene/text/tree.hpp"
@@ -100,23 +100,17 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
 
 Scene read_root(const Element& root, SceneFile& file) {
   Scene scene;
-  Table table = table_of(scene);
-  read_attributes(root, table, file.findings);
-  file.lines[""] = root.line();
-  record("", table, file);
-
-  std::vector<Child> children = {
-      {"surface",
-       [&](const Element& child) { scene.surfaces.push_back(read_surface(child, file)); }},
-  };
-  for (const Force& kind : force_kinds())
-    children.push_back({kind_of(kind), [&, kind](const Element& child) {
-                          scene.forces.push_back(read_force(child, kind, nullptr, file));
-                        }});
-  children.push_back({"group", [&](const Element& child) {
-                        scene.groups.push_back(read_group(child, scene.forces, file));
-                      }});
-  read_children(root, children, file.findings);
+  Contents contents = contents_of(scene);
+  read_contents(root, contents, "", file);
+  for (Surface& surface : scene.surfaces) {
+    auto* const mesh = std::get_if<MeshFile>(&surface.shape);
+    if (!mesh) continue;
+    const auto line = file.lines.find(fmt::format("{}.file", surface.name));
+    mesh->root = (file.root.empty() ? file.folder_at(line != file.lines.end() ? line->second : 0)
+                                    : file.root)
+                     .string();
+    if (mesh->root.empty()) mesh->root = ".";  // empty would mean the mesh's own folder
+  }
 
   std::vector<Named> named;
   add_named_children(root, named, file.findings);

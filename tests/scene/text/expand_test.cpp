@@ -507,8 +507,7 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
       {"<surface name=\"s\"><grid columns=\"3\" rows=\"3\"><include "
        "file=\"good.xml\"/></grid></surface>",
        {"shot.xml:2: <grid> has no element \"include\"; it belongs in scene, surface, material, "
-        "group, "
-        "point, radial, line, uniform, vortex, noise, inertia"}},
+        "point, radial, line, uniform, vortex, noise, inertia, group"}},
       {"<include file=\"text.xml\"/>",
        {"text.xml:1: malformed XML: there is text before the root element; a file that is included "
         "must "
@@ -530,7 +529,7 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
         "fragment, "
         "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, "
         "solver, "
-        "group, path, falloff, animate, point, radial, line, uniform, vortex, noise, inertia" +
+        "point, radial, line, uniform, vortex, noise, inertia, group, path, falloff, animate" +
         in_shot}},
       {"<include file=\"named.xml\"/>",
        {"named.xml:1: <fragment> has no attribute \"name\"; allowed: none" + in_shot}},

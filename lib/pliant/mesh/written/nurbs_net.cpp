@@ -32,7 +32,7 @@ NetCheck check_knots(const NurbsDirection& direction, const DirectionNames& name
   const std::vector<double>& knots = direction.knots;
   const auto degree = static_cast<std::size_t>(direction.degree);
   const auto count = static_cast<std::size_t>(direction.count);
-  const std::string part = fmt::format("knots{}", names.attribute);
+  const std::string part = fmt::format("knots.{}", names.along);
   const std::string thing = fmt::format("knots along=\"{}\"", names.along);
   if (knots.empty()) return {};
   if (direction.is_closed) {

@@ -47,7 +47,7 @@ bool is_summed_by_directions(const NurbsNet& net);
 
 /// What is wrong with a net.
 struct NetProblem {
-  std::string part;  ///< as the scene format calls it: columns, degreeU, points, knotsV, ...
+  std::string part;  ///< as the scene format calls it: columns, degreeU, points, knots.v, ...
   std::string message;
 };
 

@@ -259,24 +259,6 @@ bool is_adjusted(const Member& member) {
   }
 }
 
-// Calls look_at(attribute, member) for each row that may be a channel.
-template <class LookAt>
-void for_each_member(const Surface& surface, const LookAt& look_at) {
-  describe(look_at, surface.transform);
-  describe(look_at, surface.material);
-  describe(look_at, surface.tangents);
-  describe(look_at, surface.solver);
-}
-template <class LookAt>
-void for_each_member(const Force& force, const LookAt& look_at) {
-  describe(look_at, force);
-  std::visit([&](const auto& kind) { describe(look_at, kind); }, force.kind);
-}
-template <class LookAt>
-void for_each_member(const Group& group, const LookAt& look_at) {
-  describe(look_at, group);
-}
-
 }  // namespace
 
 std::string SceneChange::told() const {
@@ -457,7 +439,7 @@ std::optional<std::string> first_adjusted_channel(const Scene& scene) {
       };
       (look(members), ...);
     };
-    for_each_member(thing, look_at);
+    for_each_part(thing, [&](const auto& part) { describe(look_at, part); });
   };
   for (const Surface& surface : scene.surfaces) look_at_all(surface);
   for (const Force& force : scene.forces) look_at_all(force);

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "pliant/scene/format/artist_words.hpp"
-#include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/contents.hpp"
 #include "pliant/scene/format/nearest.hpp"
 
 namespace pliant::xml {
@@ -17,49 +17,28 @@ namespace {
 
 constexpr std::string_view part_words[] = {"x", "y", "z", "progress", "closed"};
 
-// The slots of a part after those before it.
-void append(Table& table, Table part) {
-  std::move(part.begin(), part.end(), std::back_inserter(table));
-}
+void append(Table& table, Table slots) { std::ranges::move(slots, std::back_inserter(table)); }
 
-void append_shape(Table& table, Surface& surface) {
-  if (auto* const sheet = std::get_if<GridSheet>(&surface.shape)) {
-    append(table, table_of(*sheet, surface.cache));
-  } else if (auto* const net = std::get_if<NurbsNet>(&surface.shape)) {
-    append(table, table_of(*net));
-  } else if (auto* const mesh = std::get_if<MeshFile>(&surface.shape)) {
-    append(table, surface.subdivision
-                      ? table_of(*mesh, surface.reading, surface.cache, *surface.subdivision)
-                      : table_of(*mesh, surface.reading, surface.cache));
+// The slots of a thing, of its shape, and of its parts.
+template <class Thing>
+Table all_slots(Thing& thing) {
+  Contents contents = contents_of(thing);
+  Table table = std::move(contents.attributes);
+  std::erase_if(table, [](const Slot& slot) { return !slot.excluded.empty(); });
+  for (ChildPlace& place : contents.children) {
+    if (contents.driver && !contents.driver->empty() && !place.row.is_of_driven) continue;
+    if (!place.part.empty()) append(table, std::move(place.part.front().attributes));
+    if (!place.row.noun.empty())
+      place.kinds.for_each([&](Contents& one) { append(table, std::move(one.attributes)); });
   }
-}
-
-Table all_slots(Surface& surface) {
-  Table table = table_of(surface);
-  append_shape(table, surface);
-  append(table, table_of(surface.transform));
-  if (surface.is_driven()) return table;
-  append(table, table_of(surface.material));
-  append(table, table_of(surface.tangents));
-  append(table, table_of(surface.solver));
-  return table;
-}
-
-// In a group, the group selects the region.
-Table all_slots(Force& force) {
-  Table table = table_of(force);
-  if (!force.group.empty())
-    std::erase_if(table, [](const Slot& slot) {
-      return slot.attribute.name == deformation_radius_attribute.name;
-    });
   return table;
 }
 
 Table all_slots(const NamedThings& things, const std::string& name) {
   if (Surface* const surface = things.surface(name)) return all_slots(*surface);
   if (Force* const force = things.force(name)) return all_slots(*force);
-  if (Group* const group = things.group(name)) return table_of(*group);
-  return name == Description<Scene>::element ? table_of(things.scene()) : Table();
+  if (Group* const group = things.group(name)) return all_slots(*group);
+  return name == Description<Scene>::element ? all_slots(things.scene()) : Table();
 }
 
 std::string no_object(const Scene& scene, std::string_view name) {

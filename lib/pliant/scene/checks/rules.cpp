@@ -18,9 +18,10 @@
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/format.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {
@@ -31,11 +32,9 @@ std::string path_of(const std::string& name, std::string_view attribute) {
   return fmt::format("{}{}{}", name, name.empty() ? "" : ".", attribute);
 }
 
+/// Whether it is the element of a force or a group.
 bool is_force_element(std::string_view element) {
-  const std::vector<Force> kinds = force_kinds();
-  return element == Description<Group>::element ||
-         std::any_of(kinds.begin(), kinds.end(),
-                     [&](const Force& kind) { return kind_of(kind) == element; });
+  return element != Description<Surface>::element && find_format(scene_format(), element);
 }
 
 // Of the work for each, see StopPoll.
@@ -113,7 +112,7 @@ class WholeChecker {
   }
 
   void check(const Surface& surface) {
-    check_ranges(surface.name, surface.solver);
+    for_each_part(surface, [&](const auto& part) { check_ranges(surface.name, part); });
     if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape))
       check_ranges(surface.name, *mesh);
     check_reading(surface);
@@ -140,7 +139,7 @@ class WholeChecker {
 
   void check(const Surface& surface, const NurbsNet& net) {
     for (const char* part : {"columns", "rows", "degreeU", "degreeV", "samplesU", "samplesV",
-                             "wrap", "points", "weights", "knotsU", "knotsV"})
+                             "wrap", "points", "weights", "knots.u", "knots.v"})
       if (surface.name.empty() || !is_sound(surface.name, part)) return;
     if (const auto checked = check_net(net); !checked)
       complain(surface.name, checked.error().part,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/format/format.hpp"
 #include "pliant/scene/format/nearest.hpp"
 #include "pliant/scene/text/text.hpp"
 
@@ -162,15 +163,25 @@ std::string plain_word(std::string_view word) {
   return text;
 }
 
-/// The elements whose attributes an object has, those that artists name most first.
+/// The elements whose attributes one has, its parts first.
+std::vector<std::string_view> elements_of(std::string_view element) {
+  std::vector<std::string_view> elements;
+  const ElementFormat* const format = find_format(scene_format(), element);
+  for (const ChildFormat& child : format ? format->children : std::vector<ChildFormat>())
+    if (child.is_part || child.is_choice())
+      elements.insert(elements.end(), child.names.begin(), child.names.end());
+  elements.push_back(element);
+  return elements;
+}
+
+/// Those of an object.
 std::vector<std::string_view> elements_of(const Scene& scene, std::string_view name) {
   for (const Force& force : scene.forces)
     if (force.name == name) return {kind_of(force)};
   for (const Group& group : scene.groups)
     if (group.name == name) return {Description<Group>::element};
   for (const Surface& surface : scene.surfaces)
-    if (surface.name == name)
-      return {"material", "solver", "transform", "grid", "mesh", Description<Surface>::element};
+    if (surface.name == name) return elements_of(Description<Surface>::element);
   return {Description<Scene>::element};
 }
 
@@ -214,13 +225,26 @@ std::string attribute_hint(std::string_view element, std::string_view word,
   return hint(word, allowed);
 }
 
+/// The hint of the first of these elements that has an attribute of its own to tell.
+static std::string hint_among(const std::vector<std::string_view>& elements, std::string_view word,
+                              std::span<const std::string_view> allowed,
+                              std::vector<std::string_view>& own) {
+  std::string meant;
+  for (const std::string_view element : elements)
+    if (own.empty()) meant = attribute_hint(element, word, allowed, own);
+  return meant;
+}
+
+std::string channel_hint_of(std::string_view element, std::string_view word,
+                            std::span<const std::string_view> allowed) {
+  std::vector<std::string_view> own;
+  return hint_among(elements_of(element), word, allowed, own);
+}
+
 std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own) {
-  std::string meant;
-  for (const std::string_view element : elements_of(scene, name))
-    if (own.empty()) meant = attribute_hint(element, word, allowed, own);
-  return meant;
+  return hint_among(elements_of(scene, name), word, allowed, own);
 }
 
 std::string joined_words(std::span<const std::string> words) {

@@ -39,6 +39,10 @@ std::string attribute_hint(std::string_view element, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own);
 
+/// The same for a channel of an element or of one of its parts.
+std::string channel_hint_of(std::string_view element, std::string_view word,
+                            std::span<const std::string_view> allowed);
+
 /// The same for an attribute of an object of a scene, which has those of several elements.
 std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
                            std::span<const std::string_view> allowed,

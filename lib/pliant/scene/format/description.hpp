@@ -88,9 +88,33 @@ struct Attribute {
   Syntax syntax = Syntax::Plain;
 };
 
+/// The text in an element: numbers.
+struct Numbers {
+  std::string_view meaning;  ///< for people
+  Range range = {};
+  std::size_t together = 0;  ///< so many stand on a line; 0: all
+};
+
+inline constexpr int unlimited = std::numeric_limits<int>::max();
+
+/// A row of the elements that a thing contains: how often they stand in it.
+struct Child {
+  int least = 0;
+  int most = 1;
+  /// The attribute in which several differ; empty: none.
+  std::string_view unique_by = {};
+  /// What several kinds are called of which one stands there; empty: it is one kind.
+  std::string_view noun = {};
+  bool is_of_driven = false;  ///< a driven surface has it too
+};
+
 /// The rows of T, a struct of scene.hpp: `rows(row, things...)` calls `row(attribute, members...)`
 /// for each of them, with the member of each thing; `row(attribute)` if it is no member. Members
 /// that are channels may be animated.
+///
+/// Of an element also its name, what it is, for people, and with `children(child, thing)` the
+/// elements in it, in the order in which they are written: `child(row, member)` for each, a thing
+/// that has a description, a list of such things, or a `Kinds` of things (contents.hpp).
 template <class T>
 struct Description;
 
@@ -106,6 +130,11 @@ inline constexpr Attribute progress_attribute{
     .meaning = "position along the path, as a share of its length",
     .unit = "1",
     .range = a_share};
+
+/// Calls `visit(part)` for a thing and each of its parts: elements that are always there, but for
+/// those that a driven surface has not.
+template <class T, class Visit>
+void for_each_part(T& thing, Visit&& visit);
 
 /// Calls `visit(name, attribute, channel)` for each channel of a thing, a `Channel<1>`,
 /// `Channel<3>` or `Switch`; for a position on a path with the name `NAME.progress`.
@@ -136,9 +165,49 @@ inline constexpr std::string_view map_channel_words[] = {"density", "damping", "
 
 inline constexpr Range frame_range{.least = -largest_frame, .most = largest_frame};
 
+// What an element says that is stored in several members of a thing; `Of` is the thing, const or
+// not.
+
+/// The shape of a surface.
+template <class Of>
+struct ShapeOf {
+  Of& surface;
+};
+
+/// The material of a surface with its maps.
+template <class Of>
+struct MaterialOf {
+  Of& surface;
+};
+
+/// The forces of a scene that are in no group, and its groups, in the order of its file.
+template <class Of>
+struct ActingIn {
+  Of& scene;
+};
+
+/// A group of a scene.
+template <class Of>
+struct GroupIn {
+  Of& scene;
+  std::size_t index;  ///< in scene.groups
+  std::size_t first;  ///< of its forces, in scene.forces
+};
+
+/// The forces in a group of a scene.
+template <class Of>
+struct MembersOf {
+  Of& scene;
+  std::size_t group;
+  std::size_t first;
+};
+
 template <>
 struct Description<Scene> {
   static constexpr std::string_view element = "scene";
+  static constexpr std::string_view meaning =
+      "A scene: surfaces, the forces on them, and the frames of the animation.";
+  static constexpr bool may_include = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -164,6 +233,12 @@ struct Description<Scene> {
         of.end...);
     row(Attribute{.name = "seed", .meaning = "seed of the noise forces"}, of.seed...);
   }
+
+  template <class Visit, class Of>
+  static void children(Visit&& child, Of& scene) {
+    child(Child{.most = unlimited}, scene.surfaces);
+    child(Child{.most = unlimited}, ActingIn<Of>{scene});
+  }
 };
 
 /// The name of a surface, force or group.
@@ -174,6 +249,10 @@ constexpr Attribute name_attribute(std::string_view meaning) {
 template <>
 struct Description<Surface> {
   static constexpr std::string_view element = "surface";
+  static constexpr std::string_view meaning =
+      "An elastic surface: one shape, and at most one each of transform, material, tangents and "
+      "solver.";
+  static constexpr bool may_include = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -186,11 +265,19 @@ struct Description<Surface> {
                   .absent = "none: it is solved itself"},
         of.driven_by...);
   }
+
+  template <class Visit, class Of>
+  static void children(Visit&& child, Of& surface) {
+    child(Child{.least = 1, .noun = "shape", .is_of_driven = true}, ShapeOf<Of>{surface});
+    child(Child{.is_of_driven = true}, surface.transform);
+    child(Child{}, MaterialOf<Of>{surface});
+    child(Child{}, surface.tangents);
+    child(Child{}, surface.solver);
+  }
 };
 
 template <>
 struct Description<GridSheet> {
-  static constexpr std::string_view element = "grid";
   static constexpr Range count{.least = 3, .most = max_sheet_vertices};
   static constexpr Range extent{.least = 0, .most = largest_extent, .excludes_least = true};
 
@@ -221,8 +308,6 @@ struct Description<GridSheet> {
 
 template <>
 struct Description<MeshFile> {
-  static constexpr std::string_view element = "mesh";
-
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "file",
@@ -245,8 +330,6 @@ struct Description<MeshFile> {
 /// The attributes of a sheet or a mesh that animate its shape.
 template <>
 struct Description<CacheFile> {
-  static constexpr std::string_view element = "mesh";
-
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "cache",
@@ -266,8 +349,6 @@ struct Description<CacheFile> {
 /// The attributes of a mesh, from a file or of a program, that say how it is read.
 template <>
 struct Description<MeshReading> {
-  static constexpr std::string_view element = "mesh";
-
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "wrap",
@@ -312,8 +393,6 @@ struct Description<MeshReading> {
 /// What a <subdivision> has besides the attributes of a mesh.
 template <>
 struct Description<Subdivision> {
-  static constexpr std::string_view element = "subdivision";
-
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "levels",
@@ -331,7 +410,6 @@ struct Description<Subdivision> {
 /// A net but for `wrap`, which is in both of its directions, and its numbers.
 template <>
 struct Description<NurbsNet> {
-  static constexpr std::string_view element = "nurbs";
   static constexpr Range count{.least = 3, .most = max_sheet_vertices};
   static constexpr Range samples{.least = 2, .most = max_sheet_vertices};
 
@@ -374,9 +452,149 @@ struct Description<NurbsNet> {
   }
 };
 
+// The shapes of a surface, as elements of a file.
+
+/// A surface whose shape is a sheet.
+template <class Of>
+struct SheetOf {
+  Of& surface;
+};
+
+template <class Of>
+struct Description<SheetOf<Of>> {
+  static constexpr std::string_view element = "grid";
+  static constexpr std::string_view meaning =
+      "A flat sheet in the xz-plane, centred on the origin.";
+
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    describe(row, std::get<GridSheet>(each.surface.shape)...);
+    describe(row, each.surface.cache...);
+  }
+};
+
+/// A surface whose shape is a mesh in a file.
+template <class Of>
+struct MeshOf {
+  Of& surface;
+};
+
+template <class Of>
+struct Description<MeshOf<Of>> {
+  static constexpr std::string_view element = "mesh";
+  static constexpr std::string_view meaning = "A polygon mesh from a file.";
+
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    describe(row, std::get<MeshFile>(each.surface.shape)...);
+    describe(row, each.surface.reading...);
+    describe(row, each.surface.cache...);
+  }
+};
+
+/// A surface whose shape is the cage of a subdivision surface.
+template <class Of>
+struct CageOf {
+  Of& surface;
+};
+
+template <class Of>
+struct Description<CageOf<Of>> {
+  static constexpr std::string_view element = "subdivision";
+  static constexpr std::string_view meaning =
+      "A cage from a file, simulated as a mesh and written as a subdivision surface.";
+
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    Description<MeshOf<Of>>::rows(row, each...);
+    describe(row, *each.surface.subdivision...);
+  }
+};
+
+/// The numbers in a <nurbs>: its control points, and their weights.
+struct PointsOf {
+  NurbsNet& net;
+};
+struct WeightsOf {
+  NurbsNet& net;
+};
+
+template <>
+struct Description<PointsOf> {
+  static constexpr std::string_view element = "points";
+  static constexpr std::string_view meaning = "The control points, x y z of each, along u first.";
+  static constexpr Numbers text{.meaning = "`x y z` of each control point, along u first",
+                                .together = 3};
+};
+
+template <>
+struct Description<WeightsOf> {
+  static constexpr std::string_view element = "weights";
+  static constexpr std::string_view meaning = "The weights of the control points, in their order.";
+  static constexpr Numbers text{.meaning = "one number above 0 for each control point",
+                                .range = positive};
+};
+
+/// The knots of a net, a <knots> for each direction that has some.
+struct KnotsOf {
+  NurbsNet& net;
+};
+
+enum class Along { U, V };
+inline constexpr std::string_view along_words[] = {"u", "v"};
+
+struct Knots {
+  std::optional<Along> along = {};
+  std::vector<double> numbers = {};
+};
+
+template <>
+struct Description<Knots> {
+  static constexpr std::string_view element = "knots";
+  static constexpr std::string_view meaning = "The knots along u or v.";
+  static constexpr Numbers text{
+      .meaning = "columns + degreeU + 1 numbers that never fall; along v likewise"};
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "along",
+                  .meaning = "direction of the knots",
+                  .words = along_words,
+                  .need = Need::Required},
+        of.along...);
+  }
+};
+
+/// A surface whose shape is a net.
+template <class Of>
+struct NetOf {
+  Of& surface;
+};
+
+template <class Of>
+struct Description<NetOf<Of>> {
+  static constexpr std::string_view element = "nurbs";
+  static constexpr std::string_view meaning =
+      "A net of control points, simulated as a grid and written as a NURBS surface.";
+
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    describe(row, std::get<NurbsNet>(each.surface.shape)...);
+  }
+
+  template <class Visit>
+  static void children(Visit&& child, const NetOf<Of>& of) {
+    NurbsNet& net = std::get<NurbsNet>(of.surface.shape);
+    child(Child{.least = 1}, PointsOf{net});
+    child(Child{}, WeightsOf{net});
+    child(Child{.most = 2, .unique_by = "along"}, KnotsOf{net});
+  }
+};
+
 template <>
 struct Description<TransformChannels> {
   static constexpr std::string_view element = "transform";
+  static constexpr std::string_view meaning = "Where the surface is.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -397,8 +615,6 @@ struct Description<TransformChannels> {
 
 template <>
 struct Description<MaterialChannels> {
-  static constexpr std::string_view element = "material";
-
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "density",
@@ -447,12 +663,31 @@ struct Description<MaterialChannels> {
   }
 };
 
+template <class Of>
+struct Description<MaterialOf<Of>> {
+  static constexpr std::string_view element = "material";
+  static constexpr std::string_view meaning = "How the surface resists, moves and fades.";
+  static constexpr bool may_include = true;
+
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    describe(row, each.surface.material...);
+  }
+
+  template <class Visit>
+  static void children(Visit&& child, const MaterialOf<Of>& of) {
+    child(Child{.most = unlimited, .unique_by = "channel"}, of.surface.maps);
+  }
+};
+
 /// A map among the parts of its surface, as their lines are named: `map.b`.
 std::string name_of(MapChannel channel);
 
 template <>
 struct Description<MaterialMap> {
   static constexpr std::string_view element = "map";
+  static constexpr std::string_view meaning =
+      "A channel of the material that differs over the surface.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -487,6 +722,8 @@ inline constexpr std::string_view edge_slope = "length/uv";
 template <>
 struct Description<TangentChannels> {
   static constexpr std::string_view element = "tangents";
+  static constexpr std::string_view meaning =
+      "The slopes of the surface on the edges of its region.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -504,6 +741,7 @@ struct Description<TangentChannels> {
 template <>
 struct Description<SolverSettings> {
   static constexpr std::string_view element = "solver";
+  static constexpr std::string_view meaning = "How the surface is solved.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -616,11 +854,18 @@ struct Description<Force> {
                   .words = falloff_words},
         of.falloff...);
   }
+
+  template <class Visit, class Of>
+  static void children(Visit&& child, Of& force) {
+    child(Child{}, force.falloff_curve);
+  }
 };
 
 template <>
 struct Description<Group> {
   static constexpr std::string_view element = "group";
+  static constexpr std::string_view meaning = "Forces that share one region.";
+  static constexpr bool may_include = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -635,6 +880,19 @@ struct Description<Group> {
   }
 };
 
+template <class Of>
+struct Description<GroupIn<Of>> : Description<Group> {
+  template <class Row, class... Each>
+  static void rows(Row&& row, Each&... each) {
+    describe(row, each.scene.groups[each.index]...);
+  }
+
+  template <class Visit>
+  static void children(Visit&& child, const GroupIn<Of>& of) {
+    child(Child{.most = unlimited}, MembersOf<Of>{of.scene, of.index, of.first});
+  }
+};
+
 // The kinds of forces. `Sampled` is the kind at one frame: its members have the same names. Kinds
 // without it are sampled in sampling/sampling.cpp.
 
@@ -644,6 +902,8 @@ inline constexpr std::string_view push_direction =
 template <>
 struct Description<PointChannels> {
   static constexpr std::string_view element = "point";
+  static constexpr std::string_view meaning =
+      "A force that pushes along a direction, near its centre.";
   using Sampled = PointForce;
 
   template <class Row, class... Of>
@@ -657,6 +917,7 @@ struct Description<PointChannels> {
 template <>
 struct Description<RadialChannels> {
   static constexpr std::string_view element = "radial";
+  static constexpr std::string_view meaning = "A force that pushes away from its centre.";
   using Sampled = RadialForce;
 
   template <class Row, class... Of>
@@ -671,6 +932,7 @@ struct Description<RadialChannels> {
 template <>
 struct Description<LineChannels> {
   static constexpr std::string_view element = "line";
+  static constexpr std::string_view meaning = "A force around a segment.";
   using Sampled = LineForce;
 
   template <class Row, class... Of>
@@ -689,6 +951,8 @@ struct Description<LineChannels> {
 template <>
 struct Description<UniformChannels> {
   static constexpr std::string_view element = "uniform";
+  static constexpr std::string_view meaning =
+      "A force that is the same everywhere, such as gravity or wind.";
   using Sampled = UniformForce;
 
   template <class Row, class... Of>
@@ -700,6 +964,7 @@ struct Description<UniformChannels> {
 template <>
 struct Description<VortexChannels> {
   static constexpr std::string_view element = "vortex";
+  static constexpr std::string_view meaning = "A force that turns about an axis.";
   using Sampled = VortexForce;
 
   template <class Row, class... Of>
@@ -722,6 +987,8 @@ struct Description<VortexChannels> {
 template <>
 struct Description<NoiseChannels> {
   static constexpr std::string_view element = "noise";
+  static constexpr std::string_view meaning =
+      "A force that differs smoothly from place to place and from time to time.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -748,6 +1015,8 @@ struct Description<NoiseChannels> {
 template <>
 struct Description<InertiaChannels> {
   static constexpr std::string_view element = "inertia";
+  static constexpr std::string_view meaning =
+      "The effect of the motion of the surface's transform or cache.";
   static constexpr double magnitude = 1;  ///< the default: the effect of the motion itself
 
   template <class Row, class... Of>
@@ -758,6 +1027,7 @@ struct Description<InertiaChannels> {
 template <>
 struct Description<CustomForce> {
   static constexpr std::string_view element = "custom";
+  static constexpr std::string_view meaning = "A force of a program.";
 
   template <class Row, class... Of>
   static void rows(Row&&, Of&...) {}
@@ -791,32 +1061,39 @@ struct ChannelFinder {
 };
 
 template <class T, class Visit>
-void for_each_channel(T& thing, Visit&& visit) {
+void for_each_part(T& thing, Visit&& visit) {
   using Thing = std::remove_const_t<T>;
+  visit(thing);
+  if constexpr (std::is_same_v<Thing, Force>) std::visit(visit, thing.kind);
+  const auto child = [&](const Child& row, auto&& member) {
+    using Member = std::remove_cvref_t<decltype(member)>;
+    if constexpr (std::is_same_v<Thing, Surface>) {
+      if (thing.is_driven() && !row.is_of_driven) return;
+    }
+    if constexpr (requires { Description<Member>::element; }) visit(member);
+  };
+  if constexpr (requires { Description<Thing>::children(child, thing); })
+    Description<Thing>::children(child, thing);
+}
+
+/// Whether another value stands in place of that of an attribute.
+template <class T>
+bool is_replaced(const T& thing, const Attribute& attribute) {
+  if constexpr (std::is_same_v<T, Surface>)  // the damping follows from its ratio
+    return attribute.name == "damping" && thing.material.damping_ratio;
+  else if constexpr (std::is_same_v<T, Force>)  // the group selects the region
+    return attribute.name == deformation_radius_attribute.name && !thing.group.empty();
+  else
+    return false;
+}
+
+template <class T, class Visit>
+void for_each_channel(T& thing, Visit&& visit) {
   const ChannelFinder<std::remove_reference_t<Visit>> finder{visit};
-  if constexpr (std::is_same_v<Thing, Surface>) {
-    describe(finder, thing);
-    describe(finder, thing.transform);
-    if (thing.is_driven()) return;
-    // With a damping ratio, the damping follows from it.
-    const auto row = [&](const Attribute& attribute, auto&... member) {
-      if (attribute.name != "damping" || !thing.material.damping_ratio)
-        finder(attribute, member...);
-    };
-    describe(row, thing.material);
-    describe(finder, thing.tangents);
-    describe(finder, thing.solver);
-  } else if constexpr (std::is_same_v<Thing, Force>) {
-    // In a group, the group selects the region.
-    const auto row = [&](const Attribute& attribute, auto&... member) {
-      const bool selects = attribute.name == deformation_radius_attribute.name;
-      if (!selects || thing.group.empty()) finder(attribute, member...);
-    };
-    describe(row, thing);
-    std::visit([&](auto& kind) { describe(finder, kind); }, thing.kind);
-  } else {
-    describe(finder, thing);
-  }
+  const auto row = [&](const Attribute& attribute, auto&... member) {
+    if (!is_replaced(thing, attribute)) finder(attribute, member...);
+  };
+  for_each_part(thing, [&](auto& part) { describe(row, part); });
 }
 
 }  // namespace pliant

@@ -1,13 +1,12 @@
 #include "pliant/scene/format/format.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
-#include <variant>
 
-#include "pliant/scene/reading/key_text.hpp"
-#include "pliant/scene/reading/net.hpp"
-#include "pliant/scene/reading/path.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/elements/key_text.hpp"
+#include "pliant/scene/elements/path.hpp"
+#include "pliant/scene/format/contents.hpp"
 #include "pliant/scene/text/expand.hpp"
 
 namespace pliant {
@@ -24,122 +23,152 @@ std::vector<AttributeFormat> formats_of(const Table& table) {
 }
 
 template <class Part>
-ElementFormat element(std::vector<std::string_view> parents, Need need = Need::Optional) {
+ElementFormat curve_element(KeyAxis axis) {
   Part part;
-  return {Description<Part>::element, std::move(parents), need, formats_of(table_of(part))};
+  const Contents contents = empty_contents<Description<Part>>();
+  return {.name = contents.element,
+          .meaning = contents.meaning,
+          .attributes = formats_of(table_of(part, axis, ValueKind::Number))};
 }
 
-template <class Part>
-ElementFormat key_element(std::string_view name, std::vector<std::string_view> parents, Need need,
-                          KeyAxis axis) {
-  Part part;
-  return {name, std::move(parents), need, formats_of(table_of(part, axis, ValueKind::Number))};
+class FormatMaker {
+ public:
+  std::vector<ElementFormat> make(Contents root);
+
+ private:
+  void add(Contents contents, std::string_view parent);
+  void add(ElementFormat format, std::vector<std::string_view> parents) {
+    format.parents = std::move(parents);
+    formats_.push_back(std::move(format));
+  }
+  /// The elements for which `is` holds.
+  template <class Is>
+  std::vector<std::string_view> names(const Is& is) const {
+    std::vector<std::string_view> found;
+    for (const ElementFormat& each : formats_)
+      if (std::invoke(is, each)) found.push_back(each.name);
+    return found;
+  }
+  void add_curves();
+  void add_includes();
+
+  std::vector<ElementFormat> formats_;
+  std::vector<std::string_view> with_falloff_;
+};
+
+void FormatMaker::add(Contents contents, std::string_view parent) {
+  const auto known = std::ranges::find(formats_, contents.element, &ElementFormat::name);
+  if (known != formats_.end()) return known->parents.push_back(parent);
+  const std::size_t own = formats_.size();
+  formats_.push_back({.name = contents.element,
+                      .meaning = contents.meaning,
+                      .attributes = formats_of(contents.attributes),
+                      .may_include = contents.may_include,
+                      .text = contents.text});
+  if (!parent.empty()) formats_.back().parents.push_back(parent);
+  if (contents.falloff) with_falloff_.push_back(contents.element);
+  for (ChildPlace& child : contents.children) {
+    const bool is_part = !child.part.empty();
+    formats_[own].children.push_back({child.kinds.names, child.row, is_part});
+    for (const std::string_view name : child.kinds.names)
+      add(is_part ? std::move(child.part.front()) : child.kinds.add(name), contents.element);
+  }
 }
 
-/// <key> is placed by `frame` in an <animate>, by `at` in a <falloff>.
-ElementFormat key() {
-  ElementFormat format =
-      key_element<KeyText<1>>("key", {"animate", "falloff"}, Need::Required, KeyAxis::Frame);
+/// Whether an <animate> may stand in an element: it has channels, or its parts have.
+bool is_animated(const std::vector<ElementFormat>& formats, const ElementFormat& element) {
+  return std::ranges::any_of(element.attributes, &AttributeFormat::is_keyable) ||
+         std::ranges::any_of(element.children, [&](const ChildFormat& child) {
+           return child.is_part && is_animated(formats, *find_format(formats, child.names.front()));
+         });
+}
+
+/// <path>, <falloff> and <animate>, in the elements that have what they move, and what is in them.
+void FormatMaker::add_curves() {
+  const auto allow = [&](const std::vector<std::string_view>& parents, std::string_view child,
+                         const Child& row) {
+    for (ElementFormat& each : formats_)
+      if (std::ranges::find(parents, each.name) != parents.end())
+        each.children.push_back({{child}, row});
+  };
+  const auto moved = names([](const ElementFormat& each) {
+    return std::ranges::any_of(each.attributes, &AttributeFormat::is_position);
+  });
+  if (!moved.empty()) {
+    PathText path;
+    add(contents_of(path), "");
+    std::ranges::find(formats_, Description<PathText>::element, &ElementFormat::name)->parents =
+        moved;
+  }
+  const auto animated =
+      names([&](const ElementFormat& each) { return is_animated(formats_, each); });
+  allow(animated, Description<AnimateText<1>>::element, {.most = unlimited});
+  allow(moved, Description<PathText>::element, {.most = unlimited});
+  allow(with_falloff_, Description<FalloffText>::element, {});
+  const ChildFormat keys{{Description<KeyText<1>>::element}, {.least = 1, .most = unlimited}};
+  std::vector<std::string_view> keyed;
+  if (!with_falloff_.empty()) {
+    ElementFormat falloff = curve_element<FalloffText>(KeyAxis::Falloff);
+    falloff.children = {keys};
+    keyed.push_back(falloff.name);
+    add(std::move(falloff), with_falloff_);
+  }
+  if (!animated.empty()) {
+    ElementFormat animate = curve_element<AnimateText<1>>(KeyAxis::Frame);
+    animate.children = {keys, {{Description<Loop<1>>::element}, {}}};
+    keyed.insert(keyed.begin(), animate.name);
+    add(std::move(animate), animated);
+  }
+  if (keyed.empty()) return;
+  // <key> is placed by `frame` in an <animate>, by `at` in a <falloff>.
+  ElementFormat key = curve_element<KeyText<1>>(KeyAxis::Frame);
   KeyText<1> part;
-  const Table table = table_of(part, KeyAxis::Falloff, ValueKind::Number);
-  format.attributes.insert(format.attributes.begin() + 1, format_of(table.front()));
-  return format;
+  key.attributes.insert(key.attributes.begin() + 1,
+                        format_of(table_of(part, KeyAxis::Falloff, ValueKind::Number).front()));
+  add(std::move(key), keyed);
+  if (animated.empty()) return;
+  Loop<1> loop;
+  const Contents contents = empty_contents<Description<Loop<1>>>();
+  add({.name = contents.element,
+       .meaning = contents.meaning,
+       .attributes = formats_of(table_of(loop, ValueKind::Number))},
+      {Description<AnimateText<1>>::element});
 }
 
-std::vector<std::string_view> with_groups(std::vector<std::string_view> parents) {
-  parents.emplace_back("group");
-  return parents;
+void FormatMaker::add_includes() {
+  std::vector<std::string_view> parents = names(&ElementFormat::may_include);
+  if (parents.empty()) return;
+  IncludeText include;
+  DefineText define;
+  add(contents_of(include), "");
+  formats_.back().parents = parents;
+  parents.push_back(formats_.back().name);
+  add(contents_of(define), "");
+  formats_.back().parents = std::move(parents);
 }
 
-ElementFormat sheet_element() {
-  GridSheet sheet;
-  CacheFile cache;
-  return {Description<GridSheet>::element,
-          {"surface"},
-          Need::Optional,
-          formats_of(table_of(sheet, cache))};
-}
-
-ElementFormat mesh_element() {
-  MeshFile mesh;
-  MeshReading reading;
-  CacheFile cache;
-  return {Description<MeshFile>::element,
-          {"surface"},
-          Need::Optional,
-          formats_of(table_of(mesh, reading, cache))};
-}
-
-ElementFormat cage_element() {
-  MeshFile mesh;
-  MeshReading reading;
-  CacheFile cache;
-  Subdivision subdivision;
-  return {Description<Subdivision>::element,
-          {"surface"},
-          Need::Optional,
-          formats_of(table_of(mesh, reading, cache, subdivision))};
-}
-
-/// An element of a <nurbs> that contains numbers.
-ElementFormat numbers_element(std::string_view name, Need need, std::string_view text) {
-  return {.name = name, .parents = {"nurbs"}, .need = need, .attributes = {}, .text = text};
+std::vector<ElementFormat> FormatMaker::make(Contents root) {
+  add(std::move(root), "");
+  add_curves();
+  add_includes();
+  return std::move(formats_);
 }
 
 }  // namespace
 
-std::vector<ElementFormat> scene_format() {
-  Loop<1> loop;
-  std::vector<std::string_view> forces, positioned;
-  std::vector<ElementFormat> force_formats;
-  for (Force& force : force_kinds()) {
-    const std::string_view kind = kind_of(force);
-    const Table table = table_of(force);
-    forces.push_back(kind);
-    if (std::any_of(table.begin(), table.end(), [](const Slot& row) {
-          return std::holds_alternative<PositionChannel*>(row.place);
-        }))
-      positioned.push_back(kind);
-    force_formats.push_back({kind, {"scene", "group"}, Need::Optional, formats_of(table)});
-  }
-  std::vector<std::string_view> animated = {"surface", "transform", "material", "tangents",
-                                            "solver"};
-  animated.insert(animated.end(), forces.begin(), forces.end());
-  animated.emplace_back("path");
+std::vector<ElementFormat> formats_of(Contents root) { return FormatMaker().make(std::move(root)); }
 
-  ElementFormat knots = element<KnotsText>({"nurbs"});
-  knots.text = "columns + degreeU + 1 numbers that never fall; along v likewise";
-
-  std::vector<std::string_view> defining = including_elements();
-  defining.emplace_back(Description<IncludeText>::element);
-
-  std::vector<ElementFormat> formats = {
-      element<Scene>({}, Need::Required),
-      element<Surface>({"scene"}),
-      sheet_element(),
-      mesh_element(),
-      element<NurbsNet>({"surface"}),
-      numbers_element("points", Need::Required, "`x y z` of each control point, along u first"),
-      numbers_element("weights", Need::Optional, "one number above 0 for each control point"),
-      knots,
-      cage_element(),
-      element<TransformChannels>({"surface"}),
-      element<MaterialChannels>({"surface"}),
-      element<MaterialMap>({"material"}),
-      element<TangentChannels>({"surface"}),
-      element<SolverSettings>({"surface"}),
-      element<Group>({"scene"}),
-      element<PathText>(with_groups(positioned)),
-      element<Waypoint>({"path"}, Need::Required),
-      key_element<AnimateText<1>>("falloff", forces, Need::Optional, KeyAxis::Falloff),
-      key_element<AnimateText<1>>("animate", with_groups(animated), Need::Optional, KeyAxis::Frame),
-      key(),
-      {"loop", {"animate"}, Need::Optional, formats_of(table_of(loop, ValueKind::Number))},
-      element<IncludeText>(including_elements()),
-      element<DefineText>(std::move(defining)),
-  };
-  formats.insert(formats.end(), force_formats.begin(), force_formats.end());
+const std::vector<ElementFormat>& scene_format() {
+  static const std::vector<ElementFormat> formats = [] {
+    Scene scene;
+    return formats_of(contents_of(scene));
+  }();
   return formats;
+}
+
+const ElementFormat* find_format(const std::vector<ElementFormat>& formats, std::string_view name) {
+  const auto found = std::ranges::find(formats, name, &ElementFormat::name);
+  return found != formats.end() ? &*found : nullptr;
 }
 
 }  // namespace pliant

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -8,6 +9,9 @@
 #include "pliant/scene/format/description.hpp"
 
 namespace pliant {
+namespace xml {
+struct Contents;
+}
 
 /// The format of an attribute: a row of docs/scene-format.md.
 struct AttributeFormat {
@@ -16,24 +20,49 @@ struct AttributeFormat {
   std::string unit = {};  ///< empty: none
   /// The default as a file would give it; in parentheses: what its absence means; empty: none.
   std::string standard = {};
+  std::string text = {};     ///< the default as a file would give it; empty: none
   std::string range = {};    ///< empty: anything of the type
   std::string meaning = {};  ///< for people, in Markdown
   Need need = Need::Optional;
   bool is_keyable = false;
+  bool is_position = false;                      ///< a <path> may move it
   Range limits = {};                             ///< of its numbers
   std::span<const std::string_view> words = {};  ///< of a word
+};
+
+/// Elements that may stand in another one, in any order.
+struct ChildFormat {
+  std::vector<std::string_view> names;  ///< of one kind, or of several in each other's place
+  Child row = {};
+  bool is_part = false;  ///< the thing around it has its attributes as its own
+
+  /// Whether one of several kinds stands there, whose attributes the thing around it has.
+  bool is_choice() const { return !row.noun.empty(); }
 };
 
 /// The format of an element.
 struct ElementFormat {
   std::string_view name;
-  std::vector<std::string_view> parents;  ///< elements that may contain it; empty: it is the root
-  Need need = Need::Optional;
-  std::vector<AttributeFormat> attributes;
-  std::string_view text = {};  ///< what it contains besides elements, for people; empty: nothing
+  std::string_view meaning = {};  ///< for people
+  std::vector<std::string_view> parents =
+      {};  ///< elements that may contain it; empty: it is the root
+  std::vector<AttributeFormat> attributes = {};
+  std::vector<ChildFormat> children = {};
+  bool may_include = false;          ///< an <include> or a <define> may stand in it
+  std::optional<Numbers> text = {};  ///< what it contains besides elements; null: nothing
 };
 
-/// The whole format, made from the same tables that the reader uses.
-std::vector<ElementFormat> scene_format();
+/// The format of a root element and of all that may stand in it, made from the descriptions that
+/// reading and writing use.
+std::vector<ElementFormat> formats_of(xml::Contents root);
+
+/// The format of scenes.
+const std::vector<ElementFormat>& scene_format();
+
+/// The format as an XML schema, see `scene_schema`.
+std::string schema_of(const std::vector<ElementFormat>& formats);
+
+/// The element of that name; null: there is none.
+const ElementFormat* find_format(const std::vector<ElementFormat>& formats, std::string_view name);
 
 }  // namespace pliant

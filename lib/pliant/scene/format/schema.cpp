@@ -20,50 +20,6 @@ namespace {
 
 using Names = std::vector<std::string_view>;
 
-/// What each element is, for people.
-constexpr std::pair<std::string_view, std::string_view> meanings[] = {
-    {"scene", "A scene: surfaces, the forces on them, and the frames of the animation."},
-    {"surface",
-     "An elastic surface: one shape, and at most one each of transform, material, "
-     "tangents and solver."},
-    {"grid", "A flat sheet in the xz-plane, centred on the origin."},
-    {"mesh", "A polygon mesh from a file."},
-    {"nurbs", "A net of control points, simulated as a grid and written as a NURBS surface."},
-    {"points", "The control points, x y z of each, along u first."},
-    {"weights", "The weights of the control points, in their order."},
-    {"knots", "The knots along u or v."},
-    {"subdivision",
-     "A cage from a file, simulated as a mesh and written as a subdivision surface."},
-    {"transform", "Where the surface is."},
-    {"material", "How the surface resists, moves and fades."},
-    {"map", "A channel of the material that differs over the surface."},
-    {"tangents", "The slopes of the surface on the edges of its region."},
-    {"solver", "How the surface is solved."},
-    {"group", "Forces that share one region."},
-    {"path", "A smooth curve on which a position moves."},
-    {"waypoint", "A point of the path."},
-    {"falloff", "A falloff drawn by keys, placed by at = distance / forceRadius."},
-    {"animate", "Keys of a channel."},
-    {"key", "A value of the channel at a frame."},
-    {"loop", "A part of the keys that is repeated."},
-    {"include", "A file whose content takes the place of this element."},
-    {"define", "A name for a text, which $name stands for from here on."},
-    {"fragment", "Content of a scene, to be included."},
-    {"point", "A force that pushes along a direction, near its centre."},
-    {"radial", "A force that pushes away from its centre."},
-    {"line", "A force around a segment."},
-    {"uniform", "A force that is the same everywhere, such as gravity or wind."},
-    {"vortex", "A force that turns about an axis."},
-    {"noise", "A force that differs smoothly from place to place and from time to time."},
-    {"inertia", "The effect of the motion of the surface's transform or cache."},
-};
-
-std::string_view meaning_of(std::string_view element) {
-  const auto* const found = std::find_if(std::begin(meanings), std::end(meanings),
-                                         [&](const auto& each) { return each.first == element; });
-  return found == std::end(meanings) ? std::string_view() : found->second;
-}
-
 /// An element where it stands: some have another type there than elsewhere.
 struct Context {
   std::string_view element;
@@ -74,9 +30,12 @@ struct Context {
 
 /// What holds whatever a fragment is included into.
 constexpr Context in_fragment{"fragment"};
+constexpr std::string_view meaning_of_fragment = "Content of a scene, to be included.";
 
 class SchemaWriter {
  public:
+  explicit SchemaWriter(const std::vector<ElementFormat>& formats) : formats_(formats) {}
+
   std::string write();
 
  private:
@@ -115,7 +74,11 @@ class SchemaWriter {
   }
   void line(std::string_view text) { body_ += std::string(depth_, ' ') + std::string(text) + '\n'; }
 
-  std::vector<ElementFormat> formats_ = scene_format();
+  std::string_view meaning_of(std::string_view element) const {
+    return element == in_fragment.element ? meaning_of_fragment : format(element).meaning;
+  }
+
+  const std::vector<ElementFormat>& formats_;
   SchemaTypes types_;
   std::string body_;
   std::size_t depth_ = 2;
@@ -155,8 +118,9 @@ bool SchemaWriter::may_be_included(std::string_view name) const {
 /// The attributes that an <animate> may name there.
 std::vector<const AttributeFormat*> SchemaWriter::channels_of(const Context& context) const {
   Names owners = {context.element};
-  if (context.element == "surface")
-    owners = {"surface", "transform", "material", "tangents", "solver"};
+  if (context.element != in_fragment.element)
+    for (const ChildFormat& child : format(context.element).children)
+      if (child.is_part) owners.push_back(child.names.front());
   if (context.element == in_fragment.element) {
     owners.clear();
     for (const ElementFormat& each : formats_) {
@@ -178,8 +142,7 @@ std::vector<const AttributeFormat*> SchemaWriter::channels_of(const Context& con
 std::vector<std::string> SchemaWriter::positions_of(const Context& context) const {
   std::vector<std::string> positions;
   for (const AttributeFormat* each : channels_of(context)) {
-    const bool is_position = each->name == "center" || each->name == "from" || each->name == "to";
-    if (is_position) positions.emplace_back(each->name);
+    if (each->is_position) positions.emplace_back(each->name);
   }
   return positions;
 }
@@ -273,18 +236,25 @@ void SchemaWriter::write_any_order(std::vector<std::pair<std::string_view, int>>
 void SchemaWriter::write_content(const Context& context) {
   Names children = children_of(context.element);
   if (children.empty()) return;
-  if (context.element == "nurbs") {
-    return write_any_order({{"points", 1}, {"weights", 1}, {"knots", 2}}, true);
+  if (context.element == in_fragment.element) return write_children(children, context, from(0));
+  const std::vector<ChildFormat>& rows = format(context.element).children;
+  if (!rows.empty() && std::ranges::none_of(rows, [](const ChildFormat& row) {
+        return row.row.most == unlimited;
+      })) {
+    std::vector<std::pair<std::string_view, int>> parts;
+    for (const ChildFormat& row : rows) parts.emplace_back(row.names.front(), row.row.most);
+    return write_any_order(std::move(parts), rows.front().row.least > 0);
   }
-  const auto falloff = std::ranges::find(children, "falloff");
-  if (falloff == children.end() || context.element == in_fragment.element) {
-    return write_children(children, context, from(0));
-  }
-  children.erase(falloff);  // at most one, among the others
+  const auto single = std::ranges::find_if(rows, [](const ChildFormat& row) {
+    return row.row.most == 1 && !row.is_part && row.row.noun.empty();
+  });
+  if (single == rows.end()) return write_children(children, context, from(0));
+  const std::string_view falloff = single->names.front();
+  std::erase(children, falloff);  // at most one, among the others
   open("xs:sequence");
   write_children(children, context, from(0));
   open("xs:sequence minOccurs=\"0\"");
-  write_child("falloff", context);
+  write_child(falloff, context);
   write_children(children, context, from(0));
   close("xs:sequence");
   close("xs:sequence");
@@ -292,8 +262,8 @@ void SchemaWriter::write_content(const Context& context) {
 
 void SchemaWriter::write_type(const Context& context) {
   const ElementFormat& of = format(context.element);
-  if (!of.text.empty()) {
-    const std::string type = types_.numbers_in(of.name);
+  if (of.text) {
+    const std::string type = types_.numbers_in(of.name, *of.text);
     open(fmt::format("xs:complexType name=\"{}\"", context.type()));
     open("xs:simpleContent");
     open(fmt::format("xs:extension base=\"{}\"", type));
@@ -413,13 +383,17 @@ void SchemaWriter::write_uniques(const Context& context) {
     }
     write_unique(context.type() + ".names", selector, "@name");
   }
-  if (context.element == "surface") {
-    write_unique("surface.channels",
-                 "animate|transform/animate|material/animate|tangents/animate|solver/animate",
-                 "@attribute");
+  if (context.element == in_fragment.element) return;
+  std::string animates = "animate";
+  for (const ChildFormat& child : format(context.element).children) {
+    const std::string_view name = child.names.front();
+    if (child.is_part && has(format("animate").parents, name))
+      animates += fmt::format("|{}/animate", name);
+    if (!child.row.unique_by.empty())
+      write_unique(fmt::format("{}.{}", context.type(), name), name,
+                   fmt::format("@{}", child.row.unique_by));
   }
-  if (context.element == "material") write_unique("material.maps", "map", "@channel");
-  if (context.element == "nurbs") write_unique("nurbs.knots", "knots", "@along");
+  if (context.element == "surface") write_unique("surface.channels", animates, "@attribute");
   if (context.element == "group" || is_force(context.element)) {
     const std::string_view moved = positions_of(context).empty() ? "animate" : "animate|path";
     write_unique(context.type() + ".channels", moved, "@attribute");
@@ -473,6 +447,10 @@ std::string SchemaWriter::write() {
 
 }  // namespace
 
-std::string scene_schema() { return SchemaWriter().write(); }
+std::string schema_of(const std::vector<ElementFormat>& formats) {
+  return SchemaWriter(formats).write();
+}
+
+std::string scene_schema() { return schema_of(scene_format()); }
 
 }  // namespace pliant

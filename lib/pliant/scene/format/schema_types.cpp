@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pliant/scene/reading/key_text.hpp"
+#include "pliant/scene/elements/key_text.hpp"
 
 namespace pliant::xml {
 namespace {
@@ -245,11 +245,11 @@ std::string SchemaTypes::of_words(const std::string& name, std::span<const std::
   return define(name, or_computed(words_body(words)));
 }
 
-std::string SchemaTypes::numbers_in(std::string_view element) {
-  const Range range = element == "weights" ? positive : any_number;
-  return define_once(fmt::format("numbers.{}", element),
-                     list_of(number_body(range), fmt::format("<xs:minLength value=\"{}\"/>",
-                                                             element == "points" ? 3 : 1)));
+std::string SchemaTypes::numbers_in(std::string_view element, const Numbers& numbers) {
+  const std::size_t least = std::max<std::size_t>(numbers.together, 1);
+  return define_once(
+      fmt::format("numbers.{}", element),
+      list_of(number_body(numbers.range), fmt::format("<xs:minLength value=\"{}\"/>", least)));
 }
 
 std::string SchemaTypes::definitions() const {

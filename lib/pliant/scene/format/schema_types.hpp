@@ -33,7 +33,7 @@ class SchemaTypes {
   std::string of_words(const std::string& name, std::span<const std::string> words);
 
   /// The type of the numbers that an element contains.
-  std::string numbers_in(std::string_view element);
+  std::string numbers_in(std::string_view element, const Numbers& numbers);
 
   /// All types that were named, in the order of their names.
   std::string definitions() const;

@@ -339,10 +339,12 @@ AttributeFormat format_of(const Slot& slot) {
           .type = slot.type,
           .unit = std::string(attribute.unit),
           .standard = std::move(standard),
+          .text = slot.text,
           .range = slot.range,
           .meaning = std::string(attribute.meaning),
           .need = attribute.need,
           .is_keyable = is_channel(slot.place),
+          .is_position = std::holds_alternative<PositionChannel*>(slot.place),
           .limits = attribute.range,
           .words = attribute.words};
 }
@@ -350,54 +352,6 @@ AttributeFormat format_of(const Slot& slot) {
 std::string not_supported(std::string_view instead) {
   return fmt::format("is not supported by this version of pliant{}{}", instead.empty() ? "" : "; ",
                      instead);
-}
-
-Table table_of(GridSheet& sheet, CacheFile& cache) {
-  SlotMaker maker;
-  describe(maker, sheet);
-  describe(maker, cache);
-  return maker.take();
-}
-
-Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache) {
-  SlotMaker maker;
-  describe(maker, mesh);
-  describe(maker, reading);
-  describe(maker, cache);
-  return maker.take();
-}
-
-Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache, Subdivision& subdivision) {
-  Table table = table_of(mesh, reading, cache);
-  for (Slot& slot : table_of<Subdivision>(subdivision)) table.push_back(std::move(slot));
-  return table;
-}
-
-Table table_of(NurbsNet& net) {
-  constexpr Attribute wrap{.name = "wrap",
-                           .meaning =
-                               "the closed directions: the first column (row) follows the "
-                               "last one",
-                           .words = wrap_words};
-  Table table = table_of<NurbsNet>(net);
-  const auto read = [&net, wrap](std::string_view text) {
-    Wrap value = Wrap::None;
-    Reading<void> read_word = slot(wrap, choice(value)).read(text);
-    net.u.is_closed = closes_u(value);
-    net.v.is_closed = closes_v(value);
-    return read_word;
-  };
-  Wrap value = wrap_of(net.u.is_closed, net.v.is_closed);
-  Slot own = slot(wrap, choice(value));
-  table.push_back(custom(wrap, own.type, own.range, read, own.text));
-  return table;
-}
-
-Table table_of(Force& force) {
-  SlotMaker maker;
-  describe(maker, force);
-  std::visit([&](auto& kind) { describe(maker, kind); }, force.kind);
-  return maker.take();
 }
 
 }  // namespace pliant::xml

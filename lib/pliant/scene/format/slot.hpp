@@ -65,9 +65,10 @@ struct Slot {
   std::function<Reading<void>(std::string_view)> read;  ///< stores the value, or complains
   Place place = {};
 
-  int line = 0;              ///< line where it is given or animated, 0: absent
-  bool is_animated = false;  ///< by an <animate>, not given as an attribute
-  bool is_sound = true;      ///< no problem was found with it
+  int line = 0;                    ///< line where it is given or animated, 0: absent
+  bool is_animated = false;        ///< by an <animate>, not given as an attribute
+  bool is_sound = true;            ///< no problem was found with it
+  std::string_view excluded = {};  ///< why it must not be given here; empty: it may be
 
   /// Given or left at its default, without a problem: other values may be checked against it.
   bool is_constant() const { return is_sound && !is_animated; }
@@ -125,20 +126,5 @@ Table table_of(T& thing) {
   describe(maker, thing);
   return maker.take();
 }
-
-/// The slots of a sheet: its own, then those of its cache.
-Table table_of(GridSheet& sheet, CacheFile& cache);
-
-/// The slots of a mesh file: its own, those of how it is read, then those of its cache.
-Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache);
-
-/// The slots of a cage: those of a mesh file, then those of its subdivision.
-Table table_of(MeshFile& mesh, MeshReading& reading, CacheFile& cache, Subdivision& subdivision);
-
-/// The slots of a net, and its closed directions.
-Table table_of(NurbsNet& net);
-
-/// The slots of a force: those of every kind, then those of its kind.
-Table table_of(Force& force);
 
 }  // namespace pliant::xml

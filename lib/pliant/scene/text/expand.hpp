@@ -95,6 +95,8 @@ struct DefineText {
 template <>
 struct Description<xml::IncludeText> {
   static constexpr std::string_view element = "include";
+  static constexpr std::string_view meaning =
+      "A file whose content takes the place of this element.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -109,6 +111,8 @@ struct Description<xml::IncludeText> {
 template <>
 struct Description<xml::DefineText> {
   static constexpr std::string_view element = "define";
+  static constexpr std::string_view meaning =
+      "A name for a text, which $name stands for from here on.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {

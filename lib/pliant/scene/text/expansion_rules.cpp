@@ -3,8 +3,8 @@
 #include <iterator>
 #include <string>
 
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/format.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {
@@ -43,10 +43,9 @@ std::string_view bare_text(std::string_view content) {
 }
 
 std::vector<std::string_view> including_elements() {
-  std::vector<std::string_view> names = {Description<Scene>::element, Description<Surface>::element,
-                                         Description<MaterialChannels>::element,
-                                         Description<Group>::element};
-  for (const Force& kind : force_kinds()) names.push_back(kind_of(kind));
+  std::vector<std::string_view> names;
+  for (const ElementFormat& each : scene_format())
+    if (each.may_include) names.push_back(each.name);
   return names;
 }
 

@@ -8,8 +8,8 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/files/read_file.hpp"
+#include "pliant/scene/elements/scene_file.hpp"
 #include "pliant/scene/read.hpp"
-#include "pliant/scene/reading/scene_file.hpp"
 
 namespace pliant {
 namespace {

@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/element.hpp"
+#include "pliant/scene/elements/element.hpp"
 
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/path.hpp"
+#include "pliant/scene/elements/path.hpp"
 
 #include <string>
 
@@ -84,7 +84,7 @@ TEST_CASE("what is wrong with a path is told", "[scene][path]") {
        {"<path> attribute=\"center\": is already animated (line 2)"}},
       {scene_with("<uniform name=\"u\">\n<path " + center + ">" + corner + "</path></uniform>"),
        3,
-       {"<uniform> has no such position; allowed: none"}},
+       {"<uniform> has no element \"path\"; it belongs in <point>"}},
       {surface_with("<path/>"), 3, {"it belongs in <point> or <radial> or <line>"}},
   });
 }

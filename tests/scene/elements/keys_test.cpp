@@ -1,7 +1,7 @@
 #include <string>
 #include <vector>
 
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

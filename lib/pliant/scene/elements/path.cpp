@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/path.hpp"
+#include "pliant/scene/elements/path.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -7,28 +7,13 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {
 
 bool is_position(const Slot& row) { return std::holds_alternative<PositionChannel*>(row.place); }
-
-/// The waypoints in the order of the file, with their lines.
-struct Waypoints {
-  std::vector<Value<3>> places;
-  std::vector<int> lines;
-};
-
-void read_waypoint(const Element& element, Waypoints& waypoints, Findings& findings) {
-  Waypoint waypoint;
-  Table table = table_of(waypoint);
-  read_attributes(element, table, findings);
-  read_children(element, {}, findings);
-  waypoints.places.push_back(waypoint.at);
-  waypoints.lines.push_back(element.line());
-}
 
 /// The row of the position that `attribute` names, marked as animated; null if there is none, which
 /// is a problem.
@@ -63,13 +48,18 @@ Slot* find_position(const Element& element, std::span<Slot> rows, Findings& find
   return row;
 }
 
-std::optional<Path> make_path(const Element& element, Waypoints waypoints, bool is_closed,
-                              Findings& findings) {
-  auto path = Path::make(std::move(waypoints.places), is_closed);
+std::optional<Path> make_path(const Element& element, const PathText& text, Findings& findings) {
+  std::vector<Value<3>> places;
+  for (const Waypoint& waypoint : text.waypoints) places.push_back(waypoint.at);
+  auto path = Path::make(std::move(places), text.is_closed);
   if (path) return std::move(*path);
   const PathError& error = path.error();
-  if (error.waypoint < waypoints.lines.size())
-    findings.add_problem(waypoints.lines[error.waypoint],
+  std::size_t waypoint = 0;
+  auto child = element.first_child();
+  for (; child; child = child->next())
+    if (child->name() == Description<Waypoint>::element && waypoint++ == error.waypoint) break;
+  if (child)
+    findings.add_problem(child->line(),
                          fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
   else
     findings.add_problem(element.line(), fmt::format("{} has {} waypoints; {}", tag(element),
@@ -82,28 +72,19 @@ std::optional<Path> make_path(const Element& element, Waypoints waypoints, bool 
 void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
                SceneFile& file) {
   const std::size_t problems = file.findings.problem_count();
-  PathText text;
-  Table table = table_of(text);
-  read_attributes(element, table, file.findings);
   Slot* position = find_position(element, rows, file.findings);
   const std::string path_name =
       fmt::format("{}.{}", owner, position ? position->attribute.name : std::string_view("path"));
-  Waypoints waypoints;
-  const Child children[] = {
-      {"waypoint", [&](const Element& child) { read_waypoint(child, waypoints, file.findings); }},
-      {"animate",
-       [&](const Element& child) { read_animate(child, table, path_name, file.findings); }},
-  };
-  read_children(element, children, file.findings);
+  PathText text;
+  Contents contents = contents_of(text);
+  read_contents(element, contents, owner.empty() ? "" : path_name, file);
   std::optional<Path> path;
-  if (file.findings.problem_count() == problems)
-    path = make_path(element, std::move(waypoints), text.is_closed, file.findings);
+  if (file.findings.problem_count() == problems) path = make_path(element, text, file.findings);
   if (!position) return;
   position->is_sound = position->is_sound && path.has_value();
   if (path)
     *std::get<PositionChannel*>(position->place) =
         PathMotion{std::move(*path), std::move(text.progress)};
-  if (!owner.empty()) record(path_name, table, file);
 }
 
 }  // namespace pliant::xml

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/scene/reading/element.hpp"
+#include "pliant/scene/elements/element.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant::xml {
@@ -85,6 +85,9 @@ struct AnimateText {
   Overshoot overshoot = Overshoot::Limit;
 };
 
+/// The attributes of a <falloff>.
+struct FalloffText : AnimateText<1> {};
+
 // The rows of <key>, <animate> or <falloff>, and <loop>.
 
 template <int D>
@@ -95,3 +98,32 @@ template <int D>
 Table table_of(Loop<D>& loop, ValueKind kind);
 
 }  // namespace pliant::xml
+
+namespace pliant {
+
+template <int D>
+struct Description<xml::KeyText<D>> {
+  static constexpr std::string_view element = "key";
+  static constexpr std::string_view meaning = "A value of the channel at a frame.";
+};
+
+template <int D>
+struct Description<xml::AnimateText<D>> {
+  static constexpr std::string_view element = "animate";
+  static constexpr std::string_view meaning = "Keys of a channel.";
+};
+
+template <>
+struct Description<xml::FalloffText> {
+  static constexpr std::string_view element = "falloff";
+  static constexpr std::string_view meaning =
+      "A falloff drawn by keys, placed by at = distance / forceRadius.";
+};
+
+template <int D>
+struct Description<Loop<D>> {
+  static constexpr std::string_view element = "loop";
+  static constexpr std::string_view meaning = "A part of the keys that is repeated.";
+};
+
+}  // namespace pliant

@@ -2,22 +2,24 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
-#include "pliant/scene/reading/element.hpp"
-#include "pliant/scene/reading/scene_file.hpp"
+#include "pliant/scene/elements/element.hpp"
+#include "pliant/scene/elements/scene_file.hpp"
 
 namespace pliant {
 namespace xml {
 
-/// The attributes of a <path>.
-struct PathText {
-  Channel<1> progress = 0;
-  bool is_closed = false;
-};
-
 /// A <waypoint>.
 struct Waypoint {
   Value<3> at = {};
+};
+
+/// What a <path> says.
+struct PathText {
+  Channel<1> progress = 0;
+  bool is_closed = false;
+  std::vector<Waypoint> waypoints = {};
 };
 
 /// Reads a <path> into the position that its `attribute` names among `rows`, the rows of the
@@ -32,6 +34,7 @@ void read_path(const Element& element, std::span<Slot> rows, const std::string& 
 template <>
 struct Description<xml::PathText> {
   static constexpr std::string_view element = "path";
+  static constexpr std::string_view meaning = "A smooth curve on which a position moves.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -43,11 +46,17 @@ struct Description<xml::PathText> {
     row(Attribute{.name = "closed", .meaning = "`true`: the path returns to the first waypoint"},
         of.is_closed...);
   }
+
+  template <class Visit, class Of>
+  static void children(Visit&& child, Of& path) {
+    child(Child{.least = 3, .most = unlimited}, path.waypoints);
+  }
 };
 
 template <>
 struct Description<xml::Waypoint> {
   static constexpr std::string_view element = "waypoint";
+  static constexpr std::string_view meaning = "A point of the path.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {

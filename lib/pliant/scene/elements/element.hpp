@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/scene/elements/scene_file.hpp"
 #include "pliant/scene/format/slot.hpp"
-#include "pliant/scene/reading/scene_file.hpp"
 #include "pliant/scene/text/tree.hpp"
 
 namespace pliant::xml {
 
 /// An element that another may contain, and the function that reads it.
-struct Child {
+struct ChildReader {
   std::string_view name;
   std::function<void(const Element&)> read;
 };
@@ -25,7 +25,8 @@ void read_attributes(const Element& element, Table& table, Findings& findings);
 
 /// Reads the content of an element. Problems: an element that is not among `children`, text.
 /// Returns whether every child was known: if not, an unknown one may be a required one misspelt.
-bool read_children(const Element& element, std::span<const Child> children, Findings& findings);
+bool read_children(const Element& element, std::span<const ChildReader> children,
+                   Findings& findings);
 
 /// Reads the text of an element, numbers between blanks, into `numbers`. Problems: an element in
 /// it, what is not a number, each with its line. Returns whether there was none.
@@ -52,9 +53,5 @@ void locate_file(const Element& element, Slot& row, const std::string& surface,
 
 /// Records the lines of the attributes of a table, and which attributes have problems.
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file);
-
-/// The same, and the element's own line, unless it has no name.
-void record_element(const Element& element, const std::string& name, std::span<const Slot> table,
-                    SceneFile& file);
 
 }  // namespace pliant::xml

@@ -1,6 +1,6 @@
 #include <string>
 
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/artist_words.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/reading/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 /// Why `name` cannot be animated here.
 std::string no_channel(const Element& animate, std::span<Slot* const> rows, std::string_view name) {
   const std::string parent = tag(animate.parent());
-  std::vector<std::string_view> channels, meant;
+  std::vector<std::string_view> channels;
   bool is_known = false;
   for (const Slot* row : rows) {
     if (row->attribute.name == name && row->attribute.need == Need::Later)
@@ -26,13 +26,9 @@ std::string no_channel(const Element& animate, std::span<Slot* const> rows, std:
     return value_problem(animate, "attribute", name,
                          fmt::format("cannot be animated; the channels of {} are: {}", parent,
                                      channels.empty() ? "none" : listed(channels)));
-  // Of the parts whose channels a surface animates too, the material has the words of artists.
-  const std::string_view element = animate.parent().name();
-  return value_problem(
-      animate, "attribute", name,
-      fmt::format("{} has no such channel{}", parent,
-                  attribute_hint(element == Description<Surface>::element ? "material" : element,
-                                 name, channels, meant)));
+  return value_problem(animate, "attribute", name,
+                       fmt::format("{} has no such channel{}", parent,
+                                   channel_hint_of(animate.parent().name(), name, channels)));
 }
 
 /// The largest number of components among the values of the keys.
@@ -141,13 +137,6 @@ void read_animate(const Element& animate, std::span<Slot* const> rows, const std
   }
   std::visit(CurveOfChannel{animate, owner + '.' + name, findings}, place);
   if (found != rows.end() && findings.problem_count() != problems) (*found)->is_sound = false;
-}
-
-void read_animate(const Element& animate, Table& table, const std::string& owner,
-                  Findings& findings) {
-  std::vector<Slot*> rows;
-  for (Slot& row : table) rows.push_back(&row);
-  read_animate(animate, rows, owner, findings);
 }
 
 }  // namespace pliant::xml

@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/element.hpp"
+#include "pliant/scene/elements/element.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -25,19 +25,16 @@ std::vector<std::string_view> supported_names(std::span<const Slot> table) {
 /// `; it belongs in <surface>` for an element that the format allows elsewhere.
 std::string where_it_belongs(std::string_view name) {
   std::string places;
-  static const std::vector<ElementFormat> formats = scene_format();
-  for (const ElementFormat& format : formats) {
-    if (format.name != name) continue;
-    for (const std::string_view parent : format.parents)
+  if (const ElementFormat* const format = find_format(scene_format(), name))
+    for (const std::string_view parent : format->parents)
       places += fmt::format("{}<{}>", places.empty() ? "" : " or ", parent);
-  }
   return places.empty() ? "" : "; it belongs in " + places;
 }
 
 std::string unknown_child(const Element& parent, const Element& child,
-                          std::span<const Child> children) {
+                          std::span<const ChildReader> children) {
   std::vector<std::string_view> names;
-  for (const Child& known : children) names.push_back(known.name);
+  for (const ChildReader& known : children) names.push_back(known.name);
   // Those are gone from the text that is read, unless one is misspelt.
   constexpr std::string_view expanded[] = {Description<IncludeText>::element,
                                            Description<DefineText>::element};
@@ -119,7 +116,8 @@ void read_attributes(const Element& element, Table& table, Findings& findings) {
   }
 }
 
-bool read_children(const Element& element, std::span<const Child> children, Findings& findings) {
+bool read_children(const Element& element, std::span<const ChildReader> children,
+                   Findings& findings) {
   bool all_known = true;
   constexpr std::size_t parts_of_child = 1024;
   ContentReader content(element, findings);
@@ -132,9 +130,9 @@ bool read_children(const Element& element, std::span<const Child> children, Find
       continue;
     }
     const Element& child = *part->element;
-    const auto known = std::find_if(children.begin(), children.end(), [&](const Child& candidate) {
-      return candidate.name == child.name();
-    });
+    const auto known =
+        std::find_if(children.begin(), children.end(),
+                     [&](const ChildReader& candidate) { return candidate.name == child.name(); });
     if (known != children.end()) {
       known->read(child);
       continue;
@@ -225,13 +223,6 @@ void record(const std::string& name, std::span<const Slot> table, SceneFile& fil
     if (row.line != 0) file.lines[path] = row.line;
     if (!row.is_sound) file.unsound.insert(path);
   }
-}
-
-void record_element(const Element& element, const std::string& name, std::span<const Slot> table,
-                    SceneFile& file) {
-  if (name.empty()) return;
-  file.lines[name] = element.line();
-  record(name, table, file);
 }
 
 }  // namespace pliant::xml

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/reading/read_elements.hpp"
+#include "pliant/scene/elements/read_elements.hpp"
 
 namespace pliant::xml {
 namespace {
@@ -70,7 +70,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   const std::size_t problems_before = findings_.problem_count();
   read_defaults();
   key_table_ = table_of(key_, axis_, kind_);
-  std::vector<Child> children = {
+  std::vector<ChildReader> children = {
       {"key", [&](const Element& element) { read_key(element); }},
   };
   if (axis_ == KeyAxis::Frame)

@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/key_text.hpp"
+#include "pliant/scene/elements/key_text.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "pliant/scene/elements/key_text.hpp"
 #include "pliant/scene/format/slot.hpp"
-#include "pliant/scene/reading/key_text.hpp"
 #include "pliant/scene/text/element_text.hpp"
 #include "pliant/timeline/curve.hpp"
 

@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/net.hpp"
+#include "pliant/mesh/written/nurbs_net.hpp"
 
 #include <string>
 

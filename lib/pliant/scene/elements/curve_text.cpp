@@ -1,4 +1,4 @@
-#include "pliant/scene/reading/curve_text.hpp"
+#include "pliant/scene/elements/curve_text.hpp"
 
 #include <optional>
 
