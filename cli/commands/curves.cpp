@@ -108,9 +108,7 @@ Result<std::vector<NamedChannel>> choose_channels(const Scene& scene,
   for (const std::string& path : paths) {
     const auto found = named.find(path);
     if (found == named.end()) {
-      return fail(ErrorCode::InvalidInput,
-                  fmt::format("--channel {}: the scene has no such channel{}", path,
-                              channel_hint(scene, path)));
+      return invalid(fmt::format("--channel {}: {}", path, no_channel(scene, path)));
     }
     chosen.push_back(*found->second);
   }

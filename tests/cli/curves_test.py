@@ -98,9 +98,9 @@ class Curves(Command):
     def test_wrong_usage(self):
         scene = self.write("c.xml", CURVES)
         self.write("at.txt", "1\n")
-        for arguments, words in ((["--channel", "poke.magnitud"], "it has poke.enabled, poke.magnitude"),
-                                 (["--channel", "none.b"], "no such channel"),
-                                 (["--channel", "sheet.stiffness"], 'did you mean "sheet.b", "sheet.c" and "sheet.d"?'),
+        for arguments, words in ((["--channel", "poke.magnitud"], 'did you mean "magnitude"? allowed: '),
+                                 (["--channel", "none.b"], "nothing is named"),
+                                 (["--channel", "sheet.stiffness"], 'did you mean "b", "c" and "d"?'),
                                  (["--frames", "3:1"], "A:B with A <= B"),
                                  (["--frames", "nan:1"], "A:B with A <= B"),
                                  (["--frames", "0:1e300"], "too many; at most"),

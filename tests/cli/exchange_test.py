@@ -168,7 +168,7 @@ class Exchange(Command):
         before = self.read("shot.xml")
         for arguments, message in (
                 ([anim, "-o", scene, "--map", "ball=poke.magnitude"], "the file has no such curve"),
-                ([anim, "-o", scene, "--map", "ball.translate.x=pike.magnitude"], "the scene has no such channel"),
+                ([anim, "-o", scene, "--map", "ball.translate.x=pike.magnitude"], "nothing is named"),
                 ([anim, "-o", scene, "--map", "ball.translate.x"], "must be SOURCE=CHANNEL"),
                 ([anim, "-o", scene], "no curve of the file has the name of a channel"),
                 ([anim, "-o", "none.xml", "--map", "a=b.c"], "the scene does not exist"),

@@ -223,7 +223,7 @@ class Info(Command):
                                "weight.direction", "--frames", "9").stdout.splitlines()
         self.assertEqual(rows[1:], ["hand.center.progress,9,0.25", "palm.magnitude,9,3000",
                                     "weight.direction,9,0,1,0"])
-        self.assertIn("it has hand.enabled, hand.center.progress, hand.deformationRadius", self.run_pliant(
+        self.assertIn("its channel is hand.center.progress", self.run_pliant(
             "curves", scene, "--channel", "hand.center", code=2).stderr)
 
     def test_a_force_out_of_reach(self):

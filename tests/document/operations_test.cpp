@@ -333,14 +333,15 @@ TEST_CASE("a refusal is what validate would say of the file", "[document]") {
         "shot.xml:11: error: <point> magnitude=\"1,5\": not a number: \",5\" follows 1 (write the "
         "decimal point as \".\")");
   CHECK_THAT(refusal(shot, {edit::Set{"poke.magnitud", "1"}}),
-             contains_text("poke has no attribute \"magnitud\"; did you mean \"magnitude\"?"));
+             contains_text("\"poke\" has no attribute \"magnitud\"; did you mean \"magnitude\"?"));
   CHECK_THAT(refusal(shot, {edit::Set{"pok.magnitude", "1"}}),
-             contains_text("no surface, force or group is named \"pok\"; did you mean \"poke\"?"));
+             contains_text("nothing is named \"pok\"; did you mean \"poke\"?"));
   CHECK_THAT(refusal(shot, {edit::Set{"poke", "1"}}), contains_text("is not a path"));
   CHECK_THAT(refusal(shot, {edit::Set{"poke.name", "a"}}), contains_text("changed by a rename"));
   CHECK_THAT(refusal(shot, {edit::Set{"poke.center.progress", "1"}}),
              contains_text("poke.center follows no path"));
-  CHECK_THAT(refusal(shot, {edit::Set{"poke.forceRadius.x", "1"}}), contains_text("no attribute"));
+  CHECK_THAT(refusal(shot, {edit::Set{"poke.forceRadius.x", "1"}}),
+             contains_text("is a single number"));
   // A channel that breaks its rule at a later frame.
   CHECK_THAT(refusal(shot, {edit::SetKey{"poke.forceRadius", 40, "-9"}}),
              contains_text("poke.forceRadius at frame 38 is -3, but must be at least 0"));

@@ -68,16 +68,18 @@ TEST_CASE("a position on a path has its progress as a channel", "[scene][channel
 
 TEST_CASE("what is no channel is told with those that may be meant", "[scene][channels]") {
   const Scene scene = testing::scene({testing::sheet("sheet")}, {testing::poke("poke", {0, 0, 0})});
-  CHECK(channel_hint(scene, "sheet.stiffness")
-            .starts_with("; did you mean \"sheet.b\", \"sheet.c\" and \"sheet.d\"? it has "));
-  for (const char* const word : {"poke.strength", "poke.magnitud"})
-    CHECK(channel_hint(scene, word) ==
-          "; did you mean \"poke.magnitude\"? it has poke.enabled, poke.magnitude, "
-          "poke.deformationRadius, poke.forceRadius, poke.center, poke.direction");
-  CHECK(channel_hint(scene, "pike.magnitude") ==
-        "; nothing is named \"pike\"; did you mean \"poke\"? allowed: sheet, poke");
-  CHECK(channel_hint(scene, "") == "; nothing is named \"\"; allowed: sheet, poke");
-  CHECK(channel_hint(scene, "sheet").starts_with("; it has sheet."));
+  CHECK(no_channel(scene, "sheet.stiffness")
+            .starts_with("\"sheet\" has no attribute \"stiffness\"; did you mean \"b\", \"c\" and "
+                         "\"d\"? allowed: "));
+  for (const std::string word : {"strength", "magnitud"})
+    CHECK(no_channel(scene, "poke." + word)
+              .starts_with("\"poke\" has no attribute \"" + word +
+                           "\"; did you mean \"magnitude\"? allowed: "));
+  CHECK(no_channel(scene, "pike.magnitude") ==
+        "nothing is named \"pike\"; did you mean \"poke\"? allowed: scene, sheet, poke");
+  for (const char* const word : {"", "sheet"})
+    CHECK(no_channel(scene, word).find("is not a path") != std::string::npos);
+  CHECK(no_channel(scene, "poke.falloff") == "\"poke.falloff\" is no channel");
 }
 
 TEST_CASE("channels point at the scene's own values", "[scene][channels]") {

@@ -237,7 +237,7 @@ TEST_CASE("a value that breaks a rule is refused, and changes nothing", "[simula
     CHECK(result.error().code == ErrorCode::InvalidInput);
     return result.error().message;
   };
-  CHECK_THAT(refused(live.set("poke.magnitud", 1)), Contains("did you mean \"poke.magnitude\"?"));
+  CHECK_THAT(refused(live.set("poke.magnitud", 1)), Contains("did you mean \"magnitude\"?"));
   CHECK_THAT(refused(live.set("poke.center", 1)), Contains("poke.center is 1, but must be 3 numb"));
   CHECK_THAT(refused(live.set("poke.magnitude", Value<3>{})), Contains("must be 1 number"));
   CHECK_THAT(refused(live.set("poke.magnitude", std::nan(""))), Contains("must be finite"));

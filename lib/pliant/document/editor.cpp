@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/format/artist_words.hpp"
 #include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/format/resolve.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {
@@ -13,12 +13,6 @@ namespace pliant::edit {
 using xml::in_quotes;
 
 namespace {
-
-constexpr std::string_view component_names[] = {"x", "y", "z"};
-
-bool has_components(const AttributeFormat& format) {
-  return format.type == "vector" || format.type == "number or vector";
-}
 
 std::string hint_of(std::string_view word, const std::vector<std::string>& known) {
   const std::vector<std::string_view> words(known.begin(), known.end());
@@ -68,8 +62,8 @@ Result<Element> Editor::object(std::string_view name) const {
     return draft_.refuse(fmt::format("{} does not stand in this file, but in {}:{}; edit that file",
                                      in_quotes(name), place.file, place.line));
   }
-  return draft_.refuse(fmt::format("no surface, force or group is named {}{}", in_quotes(name),
-                                   hint_of(name, names)));
+  names.insert(names.begin(), "scene");
+  return draft_.refuse(fmt::format("nothing is named {}{}", in_quotes(name), hint_of(name, names)));
 }
 
 /// Whether it is an element with a name that may stand in a group.
@@ -80,9 +74,7 @@ bool Editor::is_force(std::string_view element) const {
          std::ranges::find(parents, Description<pliant::Group>::element) != parents.end();
 }
 
-bool Editor::is_force(Element element) const {
-  return is_force(draft_.name(element));
-}
+bool Editor::is_force(Element element) const { return is_force(draft_.name(element)); }
 
 Result<Element> Editor::force(std::string_view name) const {
   auto element = object(name);
@@ -135,65 +127,44 @@ std::vector<std::string> Editor::parts_of(Element object) const {
   return parts;
 }
 
-Result<Spot> Editor::spot(const std::string& path) const {
-  const std::size_t point = path.find('.');
-  const std::string name = path.substr(0, point);
-  if (point == std::string::npos)
-    return draft_.refuse(fmt::format(
-        "{} is not a path: NAME.ATTRIBUTE, such as poke.magnitude or scene.fps", in_quotes(path)));
-  const auto object = this->object(name);
+Result<Spot> Editor::spot(const std::string& given) const {
+  const std::string path = given.starts_with('.') ? "scene" + given : given;
+  const auto parts = xml::split_path(path);
+  const auto object = parts ? this->object(parts->name) : Result<Element>(Draft::root);
   if (!object) return fail(object.error());
-  return spot_in(path, *object, path.substr(point + 1));
-}
-
-Result<Spot> Editor::spot_in(const std::string& path, Element object,
-                             const std::string& rest) const {
-  const std::size_t point = rest.find('.');
-  const std::string attribute = rest.substr(0, point);
-  const std::string inner = point == std::string::npos ? "" : rest.substr(point + 1);
-  std::vector<std::string> known;
-  for (const std::string& part : parts_of(object)) {
-    for (const AttributeFormat& format : format_of(part).attributes) {
-      if (format.name != attribute) {
-        if (format.need != Need::Later) known.emplace_back(format.name);
-        continue;
-      }
-      Spot spot{.path = path, .object = object, .part = part, .format = format};
-      if (part == draft_.name(object)) {
-        spot.element = object;
-      } else if (const auto parts = draft_.children(object, part); !parts.empty()) {
-        spot.element = parts.front();
-      }
-      if (inner.empty() && point == std::string::npos) return spot;
-      spot.path = path.substr(0, path.size() - inner.size() - 1);
-      const auto component = std::ranges::find(component_names, inner);
-      if (has_components(format) && component != std::end(component_names)) {
-        spot.component = component - std::begin(component_names);
-        return spot;
-      }
-      return spot_on_path(path, object, attribute, inner);
-    }
+  const std::vector<std::string> elements = parts_of(*object);
+  const auto at =
+      xml::resolve({.formats = formats_,
+                    .names = {},
+                    .elements =
+                        [&](const std::string&) {
+                          return std::vector<std::string_view>(elements.begin(), elements.end());
+                        }},
+                   path);
+  if (!at) return draft_.refuse(at.error());
+  if (at->path.is_of_path()) return spot_on_path(path, *object, at->path.attribute, at->path.part);
+  Spot spot{.path = at->path.title(),
+            .object = *object,
+            .part = std::string(at->element),
+            .format = *at->format,
+            .component = at->path.component()};
+  if (spot.part == draft_.name(*object)) {
+    spot.element = *object;
+  } else if (const auto found = draft_.children(*object, spot.part); !found.empty()) {
+    spot.element = found.front();
   }
-  const std::string name = object == Draft::root ? "scene" : name_of(object);
-  const std::vector<std::string_view> words(known.begin(), known.end());
-  std::vector<std::string_view> meant;
-  return draft_.refuse(fmt::format("{} has no attribute {}{}",
-                                   object == Draft::root ? "the scene" : name, in_quotes(attribute),
-                                   xml::attribute_hint(scene_, name, attribute, words, meant)));
+  return spot;
 }
 
 /// `center.progress`, an attribute of the <path> that a position follows.
 Result<Spot> Editor::spot_on_path(const std::string& path, Element object,
                                   const std::string& position, const std::string& attribute) const {
   const std::string whole = fmt::format("{}.{}", name_of(object), position);
-  const AttributeFormat* const format = find_attribute("path", attribute);
-  if (!format || format->name == "attribute")
-    return draft_.refuse(fmt::format("{} has no attribute {}{}", whole, in_quotes(attribute),
-                                     hint_of(attribute, {"progress", "closed", "x", "y", "z"})));
+  const AttributeFormat& format = *find_attribute("path", attribute);
   for (const Element child : draft_.children(object, "path"))
     if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == position)
       return Spot{
-          .path = path, .object = object, .element = child, .part = "path", .format = *format};
+          .path = path, .object = object, .element = child, .part = "path", .format = format};
   return draft_.refuse(
       fmt::format("{} follows no path, so it has no {}", whole, in_quotes(attribute)));
 }

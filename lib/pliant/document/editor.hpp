@@ -83,7 +83,6 @@ class Editor {
   const AttributeFormat* find_attribute(std::string_view element, std::string_view name) const;
   std::vector<std::string> parts_of(Element object) const;
   Result<Spot> spot(const std::string& path) const;
-  Result<Spot> spot_in(const std::string& path, Element object, const std::string& rest) const;
   Result<Spot> spot_on_path(const std::string& path, Element object, const std::string& position,
                             const std::string& attribute) const;
 

@@ -49,8 +49,7 @@ const Channel<D>& plain_channel(const Channel<D>& channel) {
 
 tl::unexpected<Error> unknown_channel(std::string_view option, const std::string& path,
                                       const Scene& scene) {
-  return invalid(fmt::format("{}{}: the scene has no such channel{}", option, path,
-                             channel_hint(scene, path)));
+  return invalid(fmt::format("{}{}: {}", option, path, no_channel(scene, path)));
 }
 
 int component_of_word(std::string_view word) {

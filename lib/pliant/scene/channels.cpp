@@ -3,11 +3,9 @@
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "pliant/scene/format/artist_words.hpp"
 #include "pliant/scene/format/description.hpp"
-#include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/format/resolve.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant {
@@ -29,28 +27,15 @@ std::vector<NamedChannel> channels_of(const Scene& scene) {
   return channels;
 }
 
-std::string channel_hint(const Scene& scene, std::string_view path) {
-  const std::vector<NamedChannel> channels = channels_of(scene);
-  const std::string_view name = path.substr(0, path.find('.'));
-  std::vector<std::string_view> names, paths, attributes;
-  for (const NamedChannel& channel : channels) {
-    const std::size_t dot = channel.path.find('.');
-    const std::string_view known = channel.path, owner = known.substr(0, dot);
-    if (names.empty() || names.back() != owner) names.push_back(owner);
-    if (owner != name) continue;
-    paths.push_back(known);
-    attributes.push_back(known.substr(dot + 1));
-  }
-  if (paths.empty())
-    return fmt::format("; nothing is named {}{}", xml::in_quotes(name), xml::hint(name, names));
-  std::vector<std::string_view> own;
-  const std::string_view attribute = path.substr(std::min(name.size() + 1, path.size()));
-  xml::attribute_hint(scene, name, attribute, attributes, own);
-  std::vector<std::string> meant;
-  for (const std::string_view one : own) meant.push_back(fmt::format("\"{}.{}\"", name, one));
-  return fmt::format("; {}it has {}",
-                     meant.empty() ? "" : "did you mean " + xml::joined_words(meant) + "? ",
-                     fmt::join(paths, ", "));
+std::string no_channel(const Scene& scene, std::string_view path) {
+  const auto at = xml::resolve(xml::scope_of(scene), path);
+  if (!at) return at.error();
+  const std::string progress = fmt::format("{}.progress", at->path.title());
+  const auto is_it = [&](const NamedChannel& channel) { return channel.path == progress; };
+  return fmt::format("{} is no channel{}", xml::in_quotes(path),
+                     std::ranges::any_of(channels_of(scene), is_it)
+                         ? "; the position follows a path, and its channel is " + progress
+                         : "");
 }
 
 }  // namespace pliant

@@ -23,8 +23,8 @@ struct NamedChannel {
 /// not change.
 std::vector<NamedChannel> channels_of(const Scene& scene);
 
-/// `; did you mean "poke.magnitude"? it has …`, or `; nothing is named "pike"; did you mean "poke"?
-/// …`, for a path that is none of a channel of the scene.
-std::string channel_hint(const Scene& scene, std::string_view path);
+/// Why a path is none of a channel of the scene: `"poke" has no attribute "magnitud"; did you mean
+/// "magnitude"? …`.
+std::string no_channel(const Scene& scene, std::string_view path);
 
 }  // namespace pliant

@@ -208,9 +208,7 @@ Result<void> LiveSimulation::Run::make_bodies() {
 }
 
 tl::unexpected<Error> LiveSimulation::Run::no_channel(std::string_view channel) const {
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("the scene has no channel \"{}\"{}", printable(channel),
-                          channel_hint(scene_, channel)));
+  return invalid(pliant::no_channel(scene_, channel));
 }
 
 Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const double> value) {

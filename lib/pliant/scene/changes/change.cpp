@@ -18,10 +18,10 @@
 #include "pliant/files/open_file.hpp"
 #include "pliant/scene/changes/change_texts.hpp"
 #include "pliant/scene/changes/changed_values.hpp"
-#include "pliant/scene/changes/value_path.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/resolve.hpp"
 #include "pliant/scene/format/slot.hpp"
 #include "pliant/scene/text/text.hpp"
 #include "pliant/timeline/adjustment.hpp"
@@ -420,8 +420,8 @@ bool ChangeCheck::names_file(const std::string& path) const {
 bool has_some_value(const Scene& scene, std::span<const std::string> paths) {
   Scene changed = scene;  // a table gives access to what it lists
   const NamedThings things(changed);
-  return std::ranges::any_of(paths,
-                             [&](const std::string& path) { return has_slot(things, path); });
+  return std::ranges::any_of(
+      paths, [&](const std::string& path) { return slot_at(things, path).has_value(); });
 }
 
 std::optional<std::string> first_adjusted_channel(const Scene& scene) {

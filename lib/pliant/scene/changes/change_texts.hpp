@@ -9,7 +9,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/changes/change.hpp"
-#include "pliant/scene/changes/value_path.hpp"
+#include "pliant/scene/format/resolve.hpp"
 
 namespace pliant {
 

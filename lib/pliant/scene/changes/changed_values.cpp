@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "pliant/scene/changes/value_path.hpp"
+#include "pliant/scene/format/resolve.hpp"
 
 namespace pliant {
 

@@ -28,7 +28,7 @@ std::string no_channel(const Element& animate, std::span<Slot* const> rows, std:
                                      channels.empty() ? "none" : listed(channels)));
   return value_problem(animate, "attribute", name,
                        fmt::format("{} has no such channel{}", parent,
-                                   channel_hint_of(animate.parent().name(), name, channels)));
+                                   channel_hint(animate.parent().name(), name, channels)));
 }
 
 /// The largest number of components among the values of the keys.

@@ -93,7 +93,7 @@ void ContentsReader::read_rest() {
   record(owner_, contents_.attributes, file_);
   // An <animate> in it may have given attributes of its parts.
   for (const ChildPlace& place : contents_.children)
-    for (const Contents& part : place.part) record(owner_, part.attributes, file_);
+    if (place.part) record(owner_, place.part->attributes, file_);
 }
 
 std::vector<ChildReader> ContentsReader::child_readers() {
@@ -131,7 +131,7 @@ void ContentsReader::read_child(const Element& child, ChildPlace& place) {
   }
   if (place.line == 0) place.line = child.line();
   if (!place.row.unique_by.empty()) return read_unique(child, place);
-  if (!place.part.empty()) return read_contents(child, place.part.front(), owner_, file_);
+  if (place.part) return read_contents(child, *place.part, owner_, file_);
   Contents contents = place.kinds.add(child.name());
   read_contents(child, contents, owner_, file_);
 }

@@ -108,12 +108,12 @@ void ContentsWriter::write_numbers(const Contents& contents, ElementText& elemen
 void ContentsWriter::write_children(Contents& contents, ElementText& element) {
   for (ChildPlace& place : contents.children) {
     if (contents.driver && !contents.driver->empty() && !place.row.is_of_driven) continue;
-    if (place.part.empty()) {
+    if (!place.part) {
       place.kinds.for_each([&](Contents& child) { element.children.push_back(write(child)); });
       continue;
     }
     // A part in which everything is the default is left out.
-    ElementText part = write(place.part.front());
+    ElementText part = write(*place.part);
     const bool is_empty = part.attributes.empty() && part.children.empty() && part.text.empty();
     if (!is_empty || place.row.least > 0) element.children.push_back(std::move(part));
   }

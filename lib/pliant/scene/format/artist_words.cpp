@@ -174,17 +174,6 @@ std::vector<std::string_view> elements_of(std::string_view element) {
   return elements;
 }
 
-/// Those of an object.
-std::vector<std::string_view> elements_of(const Scene& scene, std::string_view name) {
-  for (const Force& force : scene.forces)
-    if (force.name == name) return {kind_of(force)};
-  for (const Group& group : scene.groups)
-    if (group.name == name) return {Description<Group>::element};
-  for (const Surface& surface : scene.surfaces)
-    if (surface.name == name) return elements_of(Description<Surface>::element);
-  return {Description<Scene>::element};
-}
-
 }  // namespace
 
 std::span<const ArtistWords> artist_words() { return known_words; }
@@ -225,26 +214,19 @@ std::string attribute_hint(std::string_view element, std::string_view word,
   return hint(word, allowed);
 }
 
-/// The hint of the first of these elements that has an attribute of its own to tell.
-static std::string hint_among(const std::vector<std::string_view>& elements, std::string_view word,
-                              std::span<const std::string_view> allowed,
-                              std::vector<std::string_view>& own) {
+std::string attribute_hint(std::span<const std::string_view> elements, std::string_view word,
+                           std::span<const std::string_view> allowed,
+                           std::vector<std::string_view>& own) {
   std::string meant;
   for (const std::string_view element : elements)
     if (own.empty()) meant = attribute_hint(element, word, allowed, own);
   return meant;
 }
 
-std::string channel_hint_of(std::string_view element, std::string_view word,
-                            std::span<const std::string_view> allowed) {
+std::string channel_hint(std::string_view element, std::string_view word,
+                         std::span<const std::string_view> allowed) {
   std::vector<std::string_view> own;
-  return hint_among(elements_of(element), word, allowed, own);
-}
-
-std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
-                           std::span<const std::string_view> allowed,
-                           std::vector<std::string_view>& own) {
-  return hint_among(elements_of(scene, name), word, allowed, own);
+  return attribute_hint(elements_of(element), word, allowed, own);
 }
 
 std::string joined_words(std::span<const std::string> words) {

@@ -39,14 +39,14 @@ std::string attribute_hint(std::string_view element, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own);
 
-/// The same for a channel of an element or of one of its parts.
-std::string channel_hint_of(std::string_view element, std::string_view word,
-                            std::span<const std::string_view> allowed);
-
-/// The same for an attribute of an object of a scene, which has those of several elements.
-std::string attribute_hint(const Scene& scene, std::string_view name, std::string_view word,
+/// The same for an attribute of one of several elements, the first of which that has it counts.
+std::string attribute_hint(std::span<const std::string_view> elements, std::string_view word,
                            std::span<const std::string_view> allowed,
                            std::vector<std::string_view>& own);
+
+/// The same for a channel of an element or of one of its parts.
+std::string channel_hint(std::string_view element, std::string_view word,
+                         std::span<const std::string_view> allowed);
 
 /// `b, c and d`. Requires: a word.
 std::string joined_words(std::span<const std::string> words);

@@ -83,7 +83,7 @@ std::vector<Slot*> Contents::channels() {
   };
   add(attributes);
   for (ChildPlace& child : children)
-    for (Contents& part : child.part) add(part.attributes);
+    if (child.part) add(child.part->attributes);
   return slots;
 }
 
@@ -91,7 +91,7 @@ bool Contents::has_channels() const {
   const auto is_one = [](const Slot& slot) { return is_channel(slot.place); };
   return std::ranges::any_of(attributes, is_one) ||
          std::ranges::any_of(children, [](const ChildPlace& child) {
-           return !child.part.empty() && child.part.front().has_channels();
+           return child.part && child.part->has_channels();
          });
 }
 
@@ -177,6 +177,12 @@ Contents contents_of(NetOf<Surface> of) {
   made.attributes.push_back(custom(wrap, own.type, own.range, read, own.text));
   Of::children(ContentsMaker(made), of);
   return made;
+}
+
+std::string_view shape_of(const Surface& surface) {
+  const auto found =
+      std::ranges::find_if(shapes(), [&](const Shape& one) { return one.is_of(surface); });
+  return found != shapes().end() ? found->name : std::string_view();
 }
 
 Kinds kinds_of(const ShapeOf<Surface>& of) {

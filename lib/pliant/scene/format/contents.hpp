@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,8 +32,8 @@ struct Kinds {
 struct ChildPlace {
   Child row;
   Kinds kinds;
-  std::vector<Contents> part = {};  ///< of a thing that is always there, its contents
-  int line = 0;                     ///< of the first such element of a file; 0: none
+  std::shared_ptr<Contents> part = {};  ///< of a thing that is always there; null: it may be absent
+  int line = 0;                         ///< of the first such element of a file; 0: none
 };
 
 /// What an element of a file says, with the places where a thing stores it.
@@ -71,6 +72,9 @@ Kinds kinds_of(const KnotsOf& of);
 Kinds kinds_of(const ActingIn<Scene>& of);
 Kinds kinds_of(const MembersOf<Scene>& of);
 
+/// The element of a surface's shape; empty: it is of a program, and has none.
+std::string_view shape_of(const Surface& surface);
+
 /// One force of each kind that has an element, with its defaults, in the order of the format.
 std::vector<Force> force_kinds();
 
@@ -90,7 +94,7 @@ class ContentsMaker {
       made_.children.push_back({row, list(member)});
     } else {
       made_.children.push_back({row, {.names = {Description<Member>::element}}});
-      made_.children.back().part.push_back(contents_of(member));
+      made_.children.back().part = std::make_shared<Contents>(contents_of(member));
     }
   }
 

@@ -68,10 +68,10 @@ void FormatMaker::add(Contents contents, std::string_view parent) {
   if (!parent.empty()) formats_.back().parents.push_back(parent);
   if (contents.falloff) with_falloff_.push_back(contents.element);
   for (ChildPlace& child : contents.children) {
-    const bool is_part = !child.part.empty();
+    const bool is_part = child.part != nullptr;
     formats_[own].children.push_back({child.kinds.names, child.row, is_part});
     for (const std::string_view name : child.kinds.names)
-      add(is_part ? std::move(child.part.front()) : child.kinds.add(name), contents.element);
+      add(is_part ? std::move(*child.part) : child.kinds.add(name), contents.element);
   }
 }
 

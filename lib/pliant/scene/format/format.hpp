@@ -28,6 +28,8 @@ struct AttributeFormat {
   bool is_position = false;                      ///< a <path> may move it
   Range limits = {};                             ///< of its numbers
   std::span<const std::string_view> words = {};  ///< of a word
+
+  bool has_components() const { return type == "vector" || type == "number or vector"; }
 };
 
 /// Elements that may stand in another one, in any order.

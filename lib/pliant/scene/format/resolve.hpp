@@ -1,15 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
+#include "pliant/scene/format/format.hpp"
 #include "pliant/scene/format/slot.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/scene/text/text.hpp"
 
-/// The paths by which `--set` and sweeps name the values of a scene.
+/// The paths that name the values of a scene: of `--set`, sweeps, channels and operations.
 namespace pliant::xml {
 
 /// `NAME.attribute`, `NAME.attribute.x`, or of a position on a path `NAME.attribute.progress` and
@@ -30,7 +33,29 @@ struct ValuePath {
 /// The parts of a path; nullopt: it has none. Whether there are such values is not examined.
 std::optional<ValuePath> split_path(std::string_view path);
 
-/// A path, and the slot of the attribute that it leads to.
+/// What paths lead into.
+struct PathScope {
+  const std::vector<ElementFormat>& formats;
+  std::function<std::vector<std::string_view>()> names;  ///< of its objects
+  /// The element of an object, then those of its shape and its parts; none: nothing has the name.
+  std::function<std::vector<std::string_view>(const std::string& name)> elements;
+};
+
+/// Those of a scene, which must outlive it.
+PathScope scope_of(const Scene& scene);
+
+/// The attribute that a path leads to.
+struct ResolvedPath {
+  ValuePath path;
+  std::string_view element;  ///< that has the attribute
+  const AttributeFormat* format = nullptr;
+};
+
+/// Where a path leads. Complaints: the text is no path, or nothing has that name, attribute or
+/// part, with the nearest that there is.
+Reading<ResolvedPath> resolve(const PathScope& scope, std::string_view path);
+
+/// A path into a scene, with the value that it leads to.
 struct SlotAt {
   ValuePath path;
   Slot slot;
@@ -48,6 +73,8 @@ class NamedThings {
   Surface* surface(const std::string& name) const { return found(surfaces_, name); }
   Force* force(const std::string& name) const { return found(forces_, name); }
   Group* group(const std::string& name) const { return found(groups_, name); }
+  /// See `PathScope`.
+  std::vector<std::string_view> elements(const std::string& name) const;
 
  private:
   template <class Thing>
@@ -64,12 +91,8 @@ class NamedThings {
   ByName<Group> groups_;
 };
 
-/// The slot that a path leads to, into the scene. Complaints: the text is no path, or nothing has
-/// that name, attribute or part, with the nearest that there is.
+/// As `resolve`, with the slot in the scene. Complaints also: the value cannot be changed.
 Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path);
 Reading<SlotAt> slot_at(Scene& scene, std::string_view path);
-
-/// Whether a path leads to a slot.
-bool has_slot(const NamedThings& things, std::string_view path);
 
 }  // namespace pliant::xml

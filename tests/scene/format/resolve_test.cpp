@@ -1,4 +1,4 @@
-#include "pliant/scene/changes/value_path.hpp"
+#include "pliant/scene/format/resolve.hpp"
 
 #include <string>
 #include <utility>
@@ -52,11 +52,14 @@ TEST_CASE("a path that leads nowhere is told with the nearest", "[scene][changes
                             "paths.xml", "")
                     .value();
   const std::pair<const char*, const char*> rows[] = {
-      {"sheet", R"("sheet" is no path of an attribute; write NAME.ATTRIBUTE or scene.ATTRIBUTE)"},
+      {"sheet",
+       R"("sheet" is not a path; write NAME.ATTRIBUTE, such as poke.magnitude or scene.fps)"},
       {"shet.density", R"(nothing is named "shet"; did you mean "sheet"? allowed: scene, sheet)"},
       {"sheet.name", "name cannot be changed"},
       {"scene.version", "version cannot be changed"},
       {"sheet.density.w", R"(sheet.density has no part "w"; allowed: x, y, z, progress, closed)"},
+      {"sheet.density.x", "sheet.density is a single number, so it has no x, y and z"},
+      {"sheet.translate.progress", "sheet.translate is no position, so it has no progress"},
   };
   for (const auto& [path, complaint] : rows) {
     const auto at = slot_at(scene, path);
