@@ -239,8 +239,9 @@ TEST_CASE("a curve that breaks a rule of the scene changes nothing", "[exchange]
   curves.curves.push_back({"poke.nothing", file.curves[0].keys});
   const auto wrong = with_curves(scene_text, "shot.xml", "", "", curves);
   REQUIRE_FALSE(wrong.has_value());
-  CHECK_THAT(wrong.error().message,
-             contains_text("the scene cannot have the curves: \"poke\" has no attribute \"nothing\""));
+  CHECK_THAT(
+      wrong.error().message,
+      contains_text("the scene cannot have the curves: \"poke\" has no attribute \"nothing\""));
   curves.curves[0].channel = "pike.magnitude";
   CHECK_THAT(with_curves(scene_text, "shot.xml", "", "", curves).error().message,
              contains_text("nothing is named \"pike\""));

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "pliant/document/editor.hpp"
-#include "pliant/scene/format/nearest.hpp"
 #include "pliant/scene/format/description.hpp"
+#include "pliant/scene/format/nearest.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::edit {

@@ -229,7 +229,8 @@ TEST_CASE("what cannot be changed is told with the change and the nearest word",
   CHECK_THAT(problem("poke.magnitude.x*=2"), Contains("is a single number"));
   CHECK_THAT(problem("poke.center.progress*=2"), Contains("is not on a <path>"));
   CHECK_THAT(problem("ball.center.progress=2"), Contains("\"2\""));
-  CHECK_THAT(problem("edge.deformationRadius*=2"), Contains("a force in a <group> must not have one"));
+  CHECK_THAT(problem("edge.deformationRadius*=2"),
+             Contains("a force in a <group> must not have one"));
   CHECK_THAT(problem("poke.magnitude*=2,5"), Contains("not a number"));
   CHECK_THAT(problem("poke.magnitude+=nan"), Contains("\"nan\""));
   CHECK_THAT(problem("sheet.translate+=1 2"), Contains("\"1 2\""));

@@ -1,7 +1,6 @@
-#include "pliant/mesh/written/nurbs_net.hpp"
-
 #include <string>
 
+#include "pliant/mesh/written/nurbs_net.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

@@ -70,6 +70,39 @@ std::vector<Row> documented() {
   return rows;
 }
 
+/// How often an element may stand in one that contains it.
+std::string times_of(const ElementFormat& parent, std::string_view element) {
+  for (const ChildFormat& child : parent.children) {
+    if (std::ranges::find(child.names, element) == child.names.end()) continue;
+    if (child.is_choice()) return fmt::format("one {}", child.row.noun);
+    const int least = child.row.least, most = child.row.most;
+    if (most == unlimited) return least == 0 ? "any number" : fmt::format("{} or more", least);
+    return least == most ? fmt::format("{}", least) : fmt::format("at most {}", most);
+  }
+  return "any number";  // what is expanded before the scene is read
+}
+
+TEST_CASE("the page has one row for each element", "[scene][format]") {
+  std::vector<std::string> rows, expected;
+  for (const auto& cells : rows_below("stands in")) {
+    CAPTURE(cells);
+    REQUIRE(cells.size() == 4);
+    rows.push_back(fmt::format("| {} |", fmt::join(cells, " | ")));
+  }
+  for (const ElementFormat& element : scene_format()) {
+    std::set<std::string> times;
+    for (const std::string_view parent : element.parents)
+      times.insert(times_of(*find_format(scene_format(), parent), element.name));
+    if (element.parents.empty()) times.insert("1");
+    CAPTURE(element.name, times);
+    CHECK(times.size() == 1);
+    expected.push_back(fmt::format("| {} | {} | {} | {} |", element.name,
+                                   fmt::join(element.parents, ", "), *times.begin(),
+                                   element.meaning));
+  }
+  CHECK(rows == expected);
+}
+
 std::string key_of(std::string_view element, std::string_view attribute) {
   return std::string(element) + '.' + std::string(attribute);
 }
