@@ -26,7 +26,7 @@
 #include <unistd.h>
 
 #include "measuring.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/files/obj/read_obj.hpp"
 
 namespace {
@@ -60,9 +60,9 @@ struct Bound {
   double factor = 0, solves = 0;  // [ms]
 };
 
-Bound bound_of(const SurfaceBody& body, const BodyInputs& in, int repetitions) {
-  const SurfacePiece& piece = body.last_step().surface->pieces.at(0);
-  const TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
+Bound bound_of(const TriangleBody& body, const BodyInputs& in, int repetitions) {
+  const TrianglePatch& patch = body.last_step().surface->patches.at(0);
+  const TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), {});
   const double dt = in.frame_length / steps;
   const Bending bending = bending_of(in, body.surface().unit, body.settings().border);
   const SparseMatrix matrix = plate.matrix(bending, in.dynamics.shift(dt)).value();
@@ -83,8 +83,8 @@ Bound bound_of(const SurfaceBody& body, const BodyInputs& in, int repetitions) {
 
 void measure_frames(int count, bool has_quads) {
   const Mesh mesh = testing::square(count, 1, 0.3, has_quads);
-  SurfaceBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
-                   {.measure = Measure::Rest});
+  TriangleBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
+                    {.measure = Measure::Rest});
   const int repetitions = count < 200 ? 9 : 3;
   const BodyInputs in = inputs_of(poke(0, 0.45));
   const auto step = [&](const BodyInputs& inputs) {
@@ -98,7 +98,7 @@ void measure_frames(int count, bool has_quads) {
   const double whole = bound.factor + bound.solves;
   fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} |\n",
              body.last_step().unknown_count(), has_quads ? "quads" : "triangles",
-             body.last_step().surface->pieces[0].cells.cells.size(), kept, bound.solves,
+             body.last_step().surface->patches[0].cells.cells.size(), kept, bound.solves,
              kept / bound.solves, sliding, whole, sliding / whole);
   std::fflush(stdout);
 }
@@ -122,11 +122,11 @@ void measure_preparation(int count) {
     if (!read_obj(file, "")) std::abort();
   });
   std::filesystem::remove(file);
-  std::unique_ptr<SurfaceBody> body;
+  std::unique_ptr<TriangleBody> body;
   const double prepare = median_ms(3, [&] {
-    body =
-        std::make_unique<SurfaceBody>(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
-                                      BodySettings{.measure = Measure::Rest});
+    body = std::make_unique<TriangleBody>(
+        std::make_shared<TriangleSurface>(make_surface(mesh).value()),
+        BodySettings{.measure = Measure::Rest});
   });
   const BodyInputs in = inputs_of(poke(0, 0.0564));  // of area 0.01
   const double select = median_ms(9, [&] {

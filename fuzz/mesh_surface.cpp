@@ -11,7 +11,7 @@
 #include <fuzzer/FuzzedDataProvider.h>
 
 #include "fuzz.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/mesh/written/binding.hpp"
 
@@ -138,7 +138,7 @@ Field played(const std::shared_ptr<const TriangleSurface>& surface, const Play& 
   MemoryBudget memory(std::size_t{100} << 20);
   RunContext context;
   context.memory = &memory;
-  SurfaceBody body(surface, play.settings, SolverChoice::Auto, context);
+  TriangleBody body(surface, play.settings, SolverChoice::Auto, context);
   BodyInputs in = play.inputs;
   for (int frame = 0; frame < frame_count; ++frame) {
     for (SampledForce& force : in.forces) {

@@ -122,10 +122,10 @@ void SurfaceMarks::add(int frame, const SurfaceReport& report,
     for (const Box& part : region.parts) parts.push_back(corners(part));
     regions.back()["parts"] = parts;
   }
-  for (const PieceOutline& piece : report.outlines) {
-    if (piece.lines.segments.empty()) continue;
+  for (const PatchOutline& patch : report.outlines) {
+    if (patch.lines.segments.empty()) continue;
     regions.push_back(
-        {{"solved", piece.is_solved}, {"lines", lines_.add(mesh_->to_vertices(piece.lines))}});
+        {{"solved", patch.is_solved}, {"lines", lines_.add(mesh_->to_vertices(patch.lines))}});
   }
   for (const ForceReport& force : report.forces) {
     if (force.kind == "group") continue;

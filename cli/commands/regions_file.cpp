@@ -76,7 +76,7 @@ Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& 
   json["grid"] = nullptr;
   json["cut"] = report.cut ? Json(to_text(*report.cut)) : Json(nullptr);
   json["pieces"] = Json::array();
-  for (const CutCounts& piece : report.pieces) json["pieces"].push_back(to_json(piece));
+  for (const CutCounts& patch : report.patches) json["pieces"].push_back(to_json(patch));
   return json;
 }
 

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "body/sheets.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 
@@ -24,7 +24,7 @@ struct Played {
 
 Played played(const Mesh& mesh, const SampledForce& force, std::optional<double> weld) {
   auto surface = std::make_shared<TriangleSurface>(make_surface(mesh, {.weld = weld}).value());
-  SurfaceBody body(surface, {.measure = Measure::Rest});
+  TriangleBody body(surface, {.measure = Measure::Rest});
   BodyInputs in;
   in.frame_length = 1.0 / 24;
   in.dt = 0.02;

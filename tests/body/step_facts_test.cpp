@@ -4,7 +4,7 @@
 #include <random>
 
 #include "body/sheets.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 
@@ -20,8 +20,8 @@ StepFacts facts_on(const Body& body, const BodyInputs& inputs, StepFacts reuse =
 
 StepFacts facts_on(const Mesh& mesh, std::vector<SampledForce> forces,
                    Border border = Border::Clamped) {
-  const SurfaceBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
-                         {.measure = Measure::Rest, .border = border});
+  const TriangleBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
+                          {.measure = Measure::Rest, .border = border});
   return facts_on(body, inputs_of(std::move(forces)));
 }
 
@@ -89,7 +89,7 @@ TEST_CASE("facts tell why a force on a surface moves nothing", "[body][facts][su
   const StepFacts moving = facts_on(mesh, {push_at({0, 0, 0}, 0.3, 0.2)});
   CHECK(moving.is_solved);
   CHECK(first(moving).pushes);
-  CHECK_FALSE(moving.has_loose_piece);
+  CHECK_FALSE(moving.has_loose_patch);
 
   const StepFacts between = facts_on(mesh, {push_at({0.06, 0, 0.03}, 0.02, 0.02)});
   CHECK(first(between).is_between_nodes);
@@ -103,7 +103,7 @@ TEST_CASE("facts tell why a force on a surface moves nothing", "[body][facts][su
   CHECK_FALSE(held.is_solved);
 
   const StepFacts loose = facts_on(mesh, {push_at({0, 0, 0}, 5, 5)}, Border::Free);
-  CHECK(loose.has_loose_piece);
+  CHECK(loose.has_loose_patch);
   CHECK_FALSE(loose.is_solved);
 
   const StepFacts aside =

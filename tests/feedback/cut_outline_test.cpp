@@ -20,11 +20,11 @@ SampledForce around(const Vector3d& center, double radius) {
   return {PointForce{center, {0, 1, 0}}, 1, radius, 0, Falloff::Constant};
 }
 
-// A region, with the outline of each of its pieces.
+// A region, with the outline of each of its patches.
 struct CutRegion {
   TriangleSurface surface;
   LevelSet level_set;
-  std::vector<SurfacePiece> pieces;
+  std::vector<TrianglePatch> patches;
 
   CutRegion(const Mesh& mesh, const std::vector<SampledForce>& forces,
             Border kind = Border::Clamped)
@@ -36,7 +36,7 @@ struct CutRegion {
       const double farthest = surface.rest.row(node).cwiseAbs().maxCoeff();
       is_border.push_back(surface.rest.col(1).isZero() && farthest > half_side - 1e-9);
     }
-    pieces = cut_out(surface, level_set, is_border, kind).value();
+    patches = cut_out(surface, level_set, is_border, kind).value();
   }
 
   std::vector<double> depths(const SampledForce& force) const {
@@ -120,8 +120,8 @@ TEST_CASE("the outline of a piece is closed and lies where phi is 0", "[feedback
     const Vector3d center = is_flat ? Vector3d(0.05, 0, -0.03) : Vector3d(0.1, 1, 0.2);
     const double radius = is_flat ? 0.31 : 0.7;
     const CutRegion region(mesh, {around(center, radius)});
-    REQUIRE(region.pieces.size() == 1);
-    const SurfaceLines lines = outline_of(region.pieces[0], region.level_set);
+    REQUIRE(region.patches.size() == 1);
+    const SurfaceLines lines = outline_of(region.patches[0], region.level_set);
     CHECK(lines.segments.size() > 20);
     CHECK(is_closed(lines));
     // With triangles to the last digits; the centre of a quad may have been moved to 0 by itself.
@@ -145,8 +145,8 @@ TEST_CASE("a border belongs to the outline if it is held", "[feedback][outline]"
   const Mesh mesh = square(16, 1, 0.3, GENERATE(false, true));
   const SampledForce force = around({0.3, 0, 0.1}, 0.35);
   const CutRegion held(mesh, {force}), free(mesh, {force}, Border::Free);
-  const SurfaceLines closed = outline_of(held.pieces[0], held.level_set);
-  const SurfaceLines open = outline_of(free.pieces[0], free.level_set);
+  const SurfaceLines closed = outline_of(held.patches[0], held.level_set);
+  const SurfaceLines open = outline_of(free.patches[0], free.level_set);
   CHECK(is_closed(closed));
   CHECK_FALSE(is_closed(open));
   const auto on_border = [&](const SurfaceLines& lines) {
@@ -166,7 +166,7 @@ TEST_CASE("a border belongs to the outline if it is held", "[feedback][outline]"
              Catch::Matchers::WithinAbs(on_border(closed), 1e-12));
   // What a force pushes is an area, whatever its border does.
   const auto depths = free.depths(around({0.4, 0, 0.1}, 0.2));
-  CHECK(is_closed(outline_of(free.pieces, free.level_set, depths)));
+  CHECK(is_closed(outline_of(free.patches, free.level_set, depths)));
 }
 
 TEST_CASE("an outline crosses a seam as if there were none", "[feedback][outline]") {
@@ -174,24 +174,24 @@ TEST_CASE("an outline crosses a seam as if there were none", "[feedback][outline
   REQUIRE(seam.vertex_count() > whole.vertex_count() + 300);
   const SampledForce force = around({0.02, 1, 0.1}, 0.6), small = around({0, 1, 0.2}, 0.3);
   const CutRegion a(whole, {force}), b(seam, {force});
-  REQUIRE(a.pieces.size() == 1);
-  REQUIRE(b.pieces.size() == 1);
-  const SurfaceLines lines = outline_of(b.pieces[0], b.level_set);
+  REQUIRE(a.patches.size() == 1);
+  REQUIRE(b.patches.size() == 1);
+  const SurfaceLines lines = outline_of(b.patches[0], b.level_set);
   CHECK(is_closed(lines));
   CHECK(places_of(lines, b.surface.rest) ==
-        places_of(outline_of(a.pieces[0], a.level_set), a.surface.rest));
-  const SurfaceLines pushed = outline_of(b.pieces, b.level_set, b.depths(small));
+        places_of(outline_of(a.patches[0], a.level_set), a.surface.rest));
+  const SurfaceLines pushed = outline_of(b.patches, b.level_set, b.depths(small));
   CHECK(is_closed(pushed));
   CHECK(places_of(pushed, b.surface.rest) ==
-        places_of(outline_of(a.pieces, a.level_set, a.depths(small)), a.surface.rest));
+        places_of(outline_of(a.patches, a.level_set, a.depths(small)), a.surface.rest));
 }
 
 TEST_CASE("what a force pushes ends where its radius or the region does", "[feedback][outline]") {
   const bool has_quads = GENERATE(false, true);
   const CutRegion region(square(20, 1, 0.3, has_quads), {around({0, 0, 0}, 0.3)});
-  const SurfaceLines rim = outline_of(region.pieces[0], region.level_set);
+  const SurfaceLines rim = outline_of(region.patches[0], region.level_set);
   const auto pushed = [&](const Vector3d& center, double radius) {
-    return outline_of(region.pieces, region.level_set, region.depths(around(center, radius)));
+    return outline_of(region.patches, region.level_set, region.depths(around(center, radius)));
   };
   const SurfaceLines within = pushed({0.02, 0, 0.03}, 0.17);
   CHECK(is_closed(within));

@@ -162,10 +162,10 @@ TEST_CASE("a report has the outline of each piece and of what each force pushes"
   auto simulation = Simulation::make(scene({surface, sheet("grid")}, {force}, 4)).value();
   const SurfaceReport first = simulation.report(1, ReportDetail::Outlines)->surfaces[0];
   REQUIRE(first.outlines.size() == 2);
-  CHECK(first.pieces.size() == 2);
-  const bool is_ball_first = first.pieces[0].cells > first.pieces[1].cells;
-  const PieceOutline& ball = first.outlines[is_ball_first ? 0 : 1];
-  const PieceOutline& loose = first.outlines[is_ball_first ? 1 : 0];
+  CHECK(first.patches.size() == 2);
+  const bool is_ball_first = first.patches[0].cells > first.patches[1].cells;
+  const PatchOutline& ball = first.outlines[is_ball_first ? 0 : 1];
+  const PatchOutline& loose = first.outlines[is_ball_first ? 1 : 0];
   CHECK(ball.is_solved);
   CHECK(ball.lines.segments.size() > 20);
   CHECK_FALSE(loose.is_solved);

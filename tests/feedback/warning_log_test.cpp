@@ -148,6 +148,6 @@ TEST_CASE("facts of a surface of triangles have warnings of their own", "[feedba
   facts.forces = {{.is_between_nodes = true}};
   CHECK(kind_of() == BetweenNodes);
   facts.forces = {{}};
-  facts.has_loose_piece = true;
-  CHECK(kind_of() == LoosePiece);
+  facts.has_loose_patch = true;
+  CHECK(kind_of() == LoosePatch);
 }

@@ -8,7 +8,7 @@
 namespace pliant {
 
 bool StepPlan::selects() const {
-  return surface ? !surface->pieces.empty() : !selection.regions.empty();
+  return surface ? !surface->patches.empty() : !selection.regions.empty();
 }
 
 bool StepPlan::solves() const { return unknown_count() > 0; }
@@ -19,8 +19,8 @@ int StepPlan::unknown_count() const {
     for (const Patch& patch : region.patches) count += patch.interior_count();
   }
   if (!surface) return count;
-  for (const SurfacePiece& piece : surface->pieces) {
-    if (piece.moves()) count += piece.free_nodes;
+  for (const TrianglePatch& patch : surface->patches) {
+    if (patch.moves()) count += patch.free_nodes;
   }
   return count;
 }
@@ -32,8 +32,8 @@ bool StepPlan::is_held() const {
     }
   }
   if (!surface) return true;
-  return std::all_of(surface->pieces.begin(), surface->pieces.end(),
-                     [](const SurfacePiece& piece) { return piece.is_held() || !piece.moves(); });
+  return std::all_of(surface->patches.begin(), surface->patches.end(),
+                     [](const TrianglePatch& patch) { return patch.is_held() || !patch.moves(); });
 }
 
 Dynamics acting_dynamics(const Dynamics& dynamics, const NodeFactors* factors) {

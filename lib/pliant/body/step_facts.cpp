@@ -76,16 +76,16 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const Selection& se
   return facts;
 }
 
-ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const SurfaceSelection& selection,
+ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const TriangleSelection& selection,
                     bool is_solved) {
-  const SurfaceForceSelection& selected = selection.forces[k];
+  const TriangleForceSelection& selected = selection.forces[k];
   const bool has_magnitude = inputs.forces[k].magnitude != 0;
   const bool is_inside = selected.counts.inside_nodes > 0;
   ForceFacts facts;
   facts.is_between_nodes = selected.selects && !is_inside && selected.is_near;
   facts.is_too_small =
-      is_inside && std::all_of(selection.pieces.begin(), selection.pieces.end(),
-                               [](const SurfacePiece& piece) { return piece.free_nodes == 0; });
+      is_inside && std::all_of(selection.patches.begin(), selection.patches.end(),
+                               [](const TrianglePatch& patch) { return patch.free_nodes == 0; });
   facts.is_outside = is_solved && has_magnitude && selected.acts_outside;
   facts.touches = !selected.selects || is_inside || facts.is_between_nodes || selected.acts_inside;
   facts.is_lost = selected.is_lost;
@@ -96,15 +96,15 @@ ForceFacts facts_of(std::size_t k, const BodyInputs& inputs, const SurfaceSelect
 }
 
 StepFacts facts_of(const BodyInputs& inputs, const StepPlan& plan,
-                   const SurfaceSelection& selection, StepFacts facts) {
+                   const TriangleSelection& selection, StepFacts facts) {
   facts.is_solved = plan.solves();
   facts.is_surface = true;
-  facts.has_loose_piece =
-      std::any_of(selection.pieces.begin(), selection.pieces.end(),
-                  [](const SurfacePiece& piece) { return piece.free_nodes > 0 && !piece.moves(); });
+  facts.has_loose_patch = std::any_of(
+      selection.patches.begin(), selection.patches.end(),
+      [](const TrianglePatch& patch) { return patch.free_nodes > 0 && !patch.moves(); });
   facts.forces.clear();
   for (std::size_t k = 0; k < selection.forces.size(); ++k) {
-    const SurfaceForceSelection& force = selection.forces[k];
+    const TriangleForceSelection& force = selection.forces[k];
     facts.forces.push_back(plan.is_whole ? facts_of_push(inputs.forces[k].magnitude != 0,
                                                          force.push.node_count > 0, force.is_lost)
                                          : facts_of(k, inputs, selection, facts.is_solved));

@@ -28,13 +28,13 @@ struct ForceFacts {
 struct StepFacts {
   bool is_solved = false;
   bool is_surface = false;       ///< of triangles
-  bool has_loose_piece = false;  ///< on a surface: nothing holds a piece of the region
+  bool has_loose_patch = false;  ///< on a surface: nothing holds a patch of the region
   std::vector<ForceFacts> forces = {};
   std::vector<Box> room = {};  ///< scratch memory, not a fact
 
   friend bool operator==(const StepFacts& a, const StepFacts& b) {
     return a.is_solved == b.is_solved && a.is_surface == b.is_surface &&
-           a.has_loose_piece == b.has_loose_piece && a.forces == b.forces;
+           a.has_loose_patch == b.has_loose_patch && a.forces == b.forces;
   }
 };
 

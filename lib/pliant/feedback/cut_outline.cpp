@@ -11,28 +11,28 @@
 namespace pliant {
 namespace {
 
-using Side = std::array<int, 2>;  // two points of a piece, in ascending order
+using Side = std::array<int, 2>;  // two points of a patch, in ascending order
 
 Side side_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 // Calls f(side) for each side of each cell.
 template <class F>
-void each_side(const SurfacePiece& piece, const F& f) {
-  for (const TriangleCell& cell : piece.cells.cells) {
+void each_side(const TrianglePatch& patch, const F& f) {
+  for (const TriangleCell& cell : patch.cells.cells) {
     for (int k = 0; k < 3; ++k) f(side_of(cell.points[k], cell.points[(k + 1) % 3]));
   }
 }
 
 // The sides of one cell only, in ascending order.
-std::vector<Side> sides_of_one_cell(const SurfacePiece& piece) {
+std::vector<Side> sides_of_one_cell(const TrianglePatch& patch) {
   // The other ends of all sides, by their first ends: a few for each.
-  std::vector<int> starts(static_cast<std::size_t>(piece.cells.point_count) + 2, 0);
-  each_side(piece, [&](const Side& side) { ++starts[side[0] + 2]; });
+  std::vector<int> starts(static_cast<std::size_t>(patch.cells.point_count) + 2, 0);
+  each_side(patch, [&](const Side& side) { ++starts[side[0] + 2]; });
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<int> ends(3 * piece.cells.cells.size());
-  each_side(piece, [&](const Side& side) { ends[starts[side[0] + 1]++] = side[1]; });
+  std::vector<int> ends(3 * patch.cells.cells.size());
+  each_side(patch, [&](const Side& side) { ends[starts[side[0] + 1]++] = side[1]; });
   std::vector<Side> single;
-  for (int first = 0; first < piece.cells.point_count; ++first) {
+  for (int first = 0; first < patch.cells.point_count; ++first) {
     const auto begin = ends.begin() + starts[first], end = ends.begin() + starts[first + 1];
     std::sort(begin, end);
     for (auto same = begin; same != end;) {
@@ -44,11 +44,11 @@ std::vector<Side> sides_of_one_cell(const SurfacePiece& piece) {
   return single;
 }
 
-// Adds lines between points of a piece, and points between these, as sums of nodes.
+// Adds lines between points of a patch, and points between these, as sums of nodes.
 class OutlineMaker {
  public:
-  OutlineMaker(const SurfacePiece& piece, const LevelSet& level_set, SurfaceLines& lines)
-      : piece_(piece), level_set_(level_set), lines_(lines) {}
+  OutlineMaker(const TrianglePatch& patch, const LevelSet& level_set, SurfaceLines& lines)
+      : patch_(patch), level_set_(level_set), lines_(lines) {}
 
   int point(int k) { return point(side_of(k, k), 0); }
 
@@ -67,11 +67,11 @@ class OutlineMaker {
 
  private:
   void add(int point, double share) {
-    if (piece_.points[point] >= 0) {
-      add_end(piece_.points[point], share);
+    if (patch_.points[point] >= 0) {
+      add_end(patch_.points[point], share);
       return;
     }
-    const CutPoint& cut = piece_.cut_points[-1 - piece_.points[point]];
+    const CutPoint& cut = patch_.cut_points[-1 - patch_.points[point]];
     if (cut.kind == CutPoint::Kind::Centre) {
       add_end(-1 - cut.face, share);
     } else if (cut.kind == CutPoint::Kind::Rim) {
@@ -108,7 +108,7 @@ class OutlineMaker {
     return centres_[face] = lines_.add_point();
   }
 
-  const SurfacePiece& piece_;
+  const TrianglePatch& patch_;
   const LevelSet& level_set_;
   SurfaceLines& lines_;
   std::map<Side, int> places_;  // of a point alone: under the point twice
@@ -118,11 +118,11 @@ class OutlineMaker {
 
 }  // namespace
 
-SurfaceLines outline_of(const SurfacePiece& piece, const LevelSet& level_set) {
+SurfaceLines outline_of(const TrianglePatch& patch, const LevelSet& level_set) {
   SurfaceLines lines;
-  OutlineMaker maker(piece, level_set, lines);
-  const auto is_held = [&](int point) { return point >= piece.cells.free_points; };
-  for (const auto& [a, b] : sides_of_one_cell(piece)) {
+  OutlineMaker maker(patch, level_set, lines);
+  const auto is_held = [&](int point) { return point >= patch.cells.free_points; };
+  for (const auto& [a, b] : sides_of_one_cell(patch)) {
     if (!is_held(a) || !is_held(b)) continue;  // a free border
     const int from = maker.point(a);
     maker.join(from, maker.point(b));
@@ -130,22 +130,22 @@ SurfaceLines outline_of(const SurfacePiece& piece, const LevelSet& level_set) {
   return lines;
 }
 
-SurfaceLines outline_of(std::span<const SurfacePiece> pieces, const LevelSet& level_set,
+SurfaceLines outline_of(std::span<const TrianglePatch> patches, const LevelSet& level_set,
                         std::span<const double> at_nodes) {
   SurfaceLines lines;
   if (std::none_of(at_nodes.begin(), at_nodes.end(), [](double at) { return at > 0; }))
     return lines;
   const std::vector<double> at_centres = means_at_centres(level_set, at_nodes);
-  for (const SurfacePiece& piece : pieces) {
-    const std::vector<double> at = values_at_points(piece, at_nodes, at_centres);
-    OutlineMaker maker(piece, level_set, lines);
+  for (const TrianglePatch& patch : patches) {
+    const std::vector<double> at = values_at_points(patch, at_nodes, at_centres);
+    OutlineMaker maker(patch, level_set, lines);
     // Where the function becomes 0 on the way from a point where it is positive to another one.
     const auto zero = [&](int positive, int other) {
       if (at[other] == 0) return maker.point(other);
       const Side side = side_of(positive, other);
       return maker.point(side, at[side[0]] / (at[side[0]] - at[side[1]]));
     };
-    for (const TriangleCell& cell : piece.cells.cells) {
+    for (const TriangleCell& cell : patch.cells.cells) {
       const auto is_positive = [&](int point) { return at[point] > 0; };
       const auto positives = std::count_if(cell.points.begin(), cell.points.end(), is_positive);
       if (positives == 0 || positives == 3) continue;
@@ -158,7 +158,7 @@ SurfaceLines outline_of(std::span<const SurfacePiece> pieces, const LevelSet& le
       }
       maker.join(ends[0], ends[1]);
     }
-    for (const auto& [a, b] : sides_of_one_cell(piece)) {
+    for (const auto& [a, b] : sides_of_one_cell(patch)) {
       if (at[a] <= 0 && at[b] <= 0) continue;
       const int from = at[a] > 0 ? maker.point(a) : zero(b, a);
       maker.join(from, at[b] > 0 ? maker.point(b) : zero(a, b));

@@ -13,8 +13,8 @@
 namespace pliant {
 namespace {
 
-// Of the nodes in and around the region, and of what is held of each piece.
-Hash hash_of_cut(const SurfaceSelection& selection) {
+// Of the nodes in and around the region, and of what is held of each patch.
+Hash hash_of_cut(const TriangleSelection& selection) {
   HashStream stream;
   const auto add = [&]<class T>(const std::vector<T>& values) {
     const auto bytes = std::as_bytes(std::span(values));
@@ -23,22 +23,22 @@ Hash hash_of_cut(const SurfaceSelection& selection) {
   add(selection.level_set.nodes);
   add(selection.level_set.at_nodes);
   add(selection.level_set.at_centres);
-  for (const SurfacePiece& piece : selection.pieces) {
-    const auto held = piece.points.begin() + piece.cells.free_points;
-    add(std::vector(held, piece.points.end()));
+  for (const TrianglePatch& patch : selection.patches) {
+    const auto held = patch.points.begin() + patch.cells.free_points;
+    add(std::vector(held, patch.points.end()));
   }
   return stream.hash();
 }
 
 // Around the part of the region that is nearer to a force than its force radius.
 SurfaceLines pushed_part(const Body& body, const SurfaceInputs& inputs,
-                         const SurfaceSelection& selection, const SampledForce& force) {
+                         const TriangleSelection& selection, const SampledForce& force) {
   if (!(force.force_radius > 0)) return {};
   Field room;
   const PlacedNodes measured(body.measured(inputs.body, room), inputs.body.transform);
   const std::vector<double> depths =
       depths_of(measured, selection.level_set.nodes, force.kind, force.force_radius);
-  return outline_of(selection.pieces, selection.level_set, depths);
+  return outline_of(selection.patches, selection.level_set, depths);
 }
 
 }  // namespace
@@ -59,10 +59,10 @@ Result<SurfaceReport> report_of(const Body& body, const SurfaceInputs& inputs,
   if (step->surface) {
     report.is_surface = true;
     report.cut = hash_of_cut(*step->surface);
-    for (const SurfacePiece& piece : step->surface->pieces) {
-      report.pieces.push_back(piece.counts(step->surface->level_set));
+    for (const TrianglePatch& patch : step->surface->patches) {
+      report.patches.push_back(patch.counts(step->surface->level_set));
       if (has_outlines)
-        report.outlines.push_back({piece.moves(), outline_of(piece, step->surface->level_set)});
+        report.outlines.push_back({patch.moves(), outline_of(patch, step->surface->level_set)});
     }
   }
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {

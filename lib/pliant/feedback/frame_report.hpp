@@ -45,10 +45,10 @@ struct SurfaceReport {
   std::vector<Region> regions;      ///< also those too small to solve
   std::vector<ForceReport> forces;  ///< in the order of the scene, then those of groups
 
-  /// On a surface of triangles, which has pieces in place of regions.
+  /// On a surface of triangles, which has patches in place of regions.
   bool is_surface = false;
-  std::vector<CutCounts> pieces = {};
-  std::vector<PieceOutline> outlines = {};  ///< of the pieces, with `ReportDetail::Outlines`
+  std::vector<CutCounts> patches = {};
+  std::vector<PatchOutline> outlines = {};  ///< of the patches, with `ReportDetail::Outlines`
   /// Of phi at the nodes in and around the region, and of what is held; none: the surface is
   /// disabled, or not started.
   std::optional<Hash> cut = {};

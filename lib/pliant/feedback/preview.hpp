@@ -18,7 +18,7 @@ namespace pliant {
 /// The response of one region alone to a load that is applied and then constant.
 struct RegionPreview {
   Region region;                  ///< in nodes
-  CutCounts counts = {};          ///< of a piece of a surface of triangles, in place of `region`
+  CutCounts counts = {};          ///< of a patch of a surface of triangles, in place of `region`
   bool is_solvable = false;       ///< whether any of its nodes can move
   double static_peak = 0;         ///< as in `Preview`
   double first_frequency = 0;     ///< of its slowest vibration, undamped [Hz]; 0 without density
@@ -78,7 +78,7 @@ struct Preview {
   bool is_every_frame = true;  ///< whether all frames were examined; false: the range is too long
   double magnitude = 0;        ///< of a force, at that frame [length b/uv^4]
   Box selected;                ///< nodes, the box around all regions; empty on a surface
-  CutCounts counts = {};       ///< on a surface of triangles: of all pieces
+  CutCounts counts = {};       ///< on a surface of triangles: of all patches
   bool is_apart = false;       ///< for `All`: boxes that do not all meet form one region, since
                                ///< `combine` is box by default, not given in the scene
   bool is_solvable = false;    ///< whether any node can move
@@ -98,7 +98,7 @@ struct Preview {
 /// A preview does not solve regions with more moving nodes than this.
 inline constexpr int most_previewed_unknowns = 200'000;
 
-/// A preview does not find the vibrations of larger pieces of surfaces of triangles, and of larger
+/// A preview does not find the vibrations of larger patches of surfaces of triangles, and of larger
 /// patches whose outline is not a rectangle: they need a sparse factor. [moving nodes]
 inline constexpr int most_vibrating_nodes = 50'000;
 

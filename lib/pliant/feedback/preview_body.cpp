@@ -9,13 +9,13 @@
 
 #include "pliant/body/cycle.hpp"
 #include "pliant/body/grid_body.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/region/closed_boxes.hpp"
 #include "pliant/region/placed_nodes.hpp"
-#include "pliant/region/surface/level_set.hpp"
+#include "pliant/region/triangles/level_set.hpp"
 
 namespace pliant {
 namespace {
@@ -325,10 +325,10 @@ std::vector<RegionPreview> regions_of(const StepPlan& plan) {
     region.is_solvable = selected.is_solved();
   }
   if (!plan.surface) return regions;
-  for (const SurfacePiece& piece : plan.surface->pieces) {
+  for (const TrianglePatch& patch : plan.surface->patches) {
     RegionPreview& region = regions.emplace_back();
-    region.counts = piece.counts(plan.surface->level_set);
-    region.is_solvable = piece.moves();
+    region.counts = patch.counts(plan.surface->level_set);
+    region.is_solvable = patch.moves();
   }
   return regions;
 }
@@ -336,7 +336,7 @@ std::vector<RegionPreview> regions_of(const StepPlan& plan) {
 Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
                                              std::size_t k, RegionPreview region,
                                              const RegionMotion* known) const {
-  if (plan.surface) return piece_vibrations(inputs, *plan.surface, k, std::move(region), known);
+  if (plan.surface) return triangle_vibrations(inputs, *plan.surface, k, std::move(region), known);
   return patch_vibrations(inputs, std::move(region), known);
 }
 
@@ -365,13 +365,13 @@ Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, con
       const auto solver = make_plate_solver(SolverChoice::Auto, context_);
       return smallest_eigenvalue(*solver, system_of(inputs, region.region.patches[0]));
     }
-    const SurfacePiece& piece = plan.surface->pieces[k];
+    const TrianglePatch& patch = plan.surface->patches[k];
     const NodeFactors* const factors = shape_.factors.get();
-    TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), context_,
-                        factors_of(*shape_.surface, plan.surface->level_set, piece, factors));
+    TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), context_,
+                        factors_of(*shape_.surface, plan.surface->level_set, patch, factors));
     const Border border = body_settings(surface_, false).border;
     return smallest_eigenvalue(plate, bending_of(inputs, shape_.surface->unit, border),
-                               piece.is_held());
+                               patch.is_held());
   };
   const auto lambda = smallest();
   if (!lambda) return fail(lambda.error());
@@ -422,23 +422,23 @@ Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs, Reg
   return moving;
 }
 
-Result<MovingRegion> PreviewBody::piece_vibrations(const BodyInputs& inputs,
-                                                   const SurfaceSelection& selection, std::size_t k,
-                                                   RegionPreview region,
-                                                   const RegionMotion* known) const {
-  const SurfacePiece& piece = selection.pieces[k];
+Result<MovingRegion> PreviewBody::triangle_vibrations(const BodyInputs& inputs,
+                                                      const TriangleSelection& selection,
+                                                      std::size_t k, RegionPreview region,
+                                                      const RegionMotion* known) const {
+  const TrianglePatch& patch = selection.patches[k];
   std::vector<int> nodes;
-  for (int n = 0; n < piece.free_nodes; ++n) {
-    nodes.push_back(selection.level_set.nodes[piece.points[n]]);
+  for (int n = 0; n < patch.free_nodes; ++n) {
+    nodes.push_back(selection.level_set.nodes[patch.points[n]]);
   }
   const Field ways = displacements(nodes);
   const Field world = vectors_to_world(inputs.transform, ways);
   region.static_peak = longest_vector(world).length;
   if (known) return moving_as(*known, inputs, std::move(region));
-  if (piece.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
+  if (patch.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
-  TrianglePlate triangles(piece.cells, piece.masses, available_solvers().front(), context_,
-                          factors_of(*shape_.surface, selection.level_set, piece, factors));
+  TrianglePlate triangles(patch.cells, patch.masses, available_solvers().front(), context_,
+                          factors_of(*shape_.surface, selection.level_set, patch, factors));
   const Border border = body_settings(surface_, false).border;
   const Bending bending = bending_of(inputs, shape_.surface->unit, border);
   const auto plate = vibrating(triangles, bending);

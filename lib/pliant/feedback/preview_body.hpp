@@ -26,7 +26,7 @@ bool is_plain(const Surface& surface);
 /// Whether a plan has no load at all. Of a grid that is not known: false.
 bool has_no_load(const StepPlan& plan);
 
-/// The regions of a plan, or its pieces, without their vibrations. Internal to feedback.
+/// The regions of a plan, or its patches, without their vibrations. Internal to feedback.
 std::vector<RegionPreview> regions_of(const StepPlan& plan);
 
 /// A region with its vibrations. Internal to feedback.
@@ -114,13 +114,13 @@ class PreviewBody {
   std::vector<std::size_t> selecting(const BodyInputs& inputs, const StepPlan& plan) const;
 
   /// The vibrations of a settled region when it is released, for its patch with the peak: those of
-  /// region or piece `k` of `plan`. `known`: how that moves, if only its load by a factor, density
+  /// region or patch `k` of `plan`. `known`: how that moves, if only its load by a factor, density
   /// and damping are others than when it was found; null: it is found. Requires: it is settled
   /// under `inputs`; `region.is_solvable`.
   Result<MovingRegion> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
                                   RegionPreview region, const RegionMotion* known = nullptr) const;
 
-  /// The frequency of the slowest vibration and its damping ratio, of region or piece `k` of a plan
+  /// The frequency of the slowest vibration and its damping ratio, of region or patch `k` of a plan
   /// that nothing holds. `known` as for `vibrations`. Requires: `region.is_solvable`; inputs with
   /// density.
   Result<MovingRegion> unheld_vibration(const BodyInputs& inputs, const StepPlan& plan,
@@ -136,9 +136,9 @@ class PreviewBody {
   Field displacements(std::span<const int> nodes) const;
   Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region,
                                         const RegionMotion* known) const;
-  Result<MovingRegion> piece_vibrations(const BodyInputs& inputs, const SurfaceSelection& selection,
-                                        std::size_t k, RegionPreview region,
-                                        const RegionMotion* known) const;
+  Result<MovingRegion> triangle_vibrations(const BodyInputs& inputs,
+                                           const TriangleSelection& selection, std::size_t k,
+                                           RegionPreview region, const RegionMotion* known) const;
   MovingRegion moving_as(const RegionMotion& motion, const BodyInputs& inputs,
                          RegionPreview region) const;
   PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;

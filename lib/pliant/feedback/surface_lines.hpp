@@ -31,7 +31,7 @@ struct SurfaceLines {
 
 /// The outline of a connected part of a region that is cut out of triangles, between nodes: where
 /// phi is 0, and along a border that is held.
-struct PieceOutline {
+struct PatchOutline {
   bool is_solved = false;  ///< whether it moves
   SurfaceLines lines;
 };

@@ -62,11 +62,11 @@ void add_facts(WarningLog& log, const Surface& of, int frame, const SurfaceInput
                const StepFacts& facts) {
   using enum Warning::Kind;
   const std::string_view surface = of.name;
-  if (facts.has_loose_piece) log.add(LoosePiece, surface, {}, frame);
+  if (facts.has_loose_patch) log.add(LoosePatch, surface, {}, frame);
   // A whole body waits for no force: if it is not solved, nothing of it can move, and no force and
   // no tangent is to blame.
   if (of.solver.region == SolvedRegion::All && !facts.is_solved) {
-    if (!facts.has_loose_piece) log.add(AllHeld, surface, {}, frame);
+    if (!facts.has_loose_patch) log.add(AllHeld, surface, {}, frame);
     return;
   }
   for (std::size_t k = 0; k < facts.forces.size(); ++k) {

@@ -79,7 +79,7 @@ std::string Warning::message() const {
           "{} \"{}\" reaches \"{}\" {}, but no node is nearer than its deformationRadius: the mesh "
           "is too coarse; subdivide it, or press a finer proxy that drives it (drivenBy)",
           noun, force, surface, when);
-    case Kind::LoosePiece:
+    case Kind::LoosePatch:
       return fmt::format(
           "a piece of \"{}\" lies wholly in the forces' spheres {}: nothing holds it, so it does "
           "not move",
@@ -130,7 +130,7 @@ std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, cons
 int line_of(const Warning& warning, const SceneOrigin& origin) {
   if (!warning.force.empty()) return origin.line_of(warning.force);
   if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
-      warning.kind == Warning::Kind::LoosePiece) {
+      warning.kind == Warning::Kind::LoosePatch) {
     return origin.line_of(warning.surface, "file");
   }
   if (warning.kind == Warning::Kind::CacheOutside) {

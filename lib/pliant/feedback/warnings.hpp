@@ -25,7 +25,7 @@ struct Warning {
     AllHeld,         ///< all nodes that a force selects on a surface are held; without a force,
                      ///< all of a surface that is solved whole
     BetweenNodes,    ///< a force reaches a surface, but no node of it
-    LoosePiece,      ///< nothing holds a piece of a surface's region
+    LoosePatch,      ///< nothing holds a patch of a surface's region
     FacesLeftOut,    ///< faces of a mesh that its surface does not have
     CacheOutside,    ///< no frame of the scene is within the samples of a surface's cache
     FileLeftOut,     ///< what a mesh's file has and the mesh lacks

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/scene/format/description.hpp"

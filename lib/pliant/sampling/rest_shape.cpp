@@ -10,7 +10,7 @@
 
 #include "pliant/body/driven_body.hpp"
 #include "pliant/body/grid_body.hpp"
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/read_mesh.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
@@ -375,7 +375,8 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
       .nodes = surface.node_count(), .faces = surface.face_count(), .unit = surface.unit};
   summary.border_edges =
       static_cast<int>(std::count(surface.edge_sides.begin(), surface.edge_sides.end(), 1));
-  for (const int piece : pieces_of(surface)) summary.pieces = std::max(summary.pieces, piece + 1);
+  for (const int patch : patches_of(surface))
+    summary.patches = std::max(summary.patches, patch + 1);
   return summary;
 }
 
@@ -396,8 +397,8 @@ Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettin
   if (shape.surface) {
     auto tree = PointTree::make(shape.surface->rest, context.should_stop);
     if (!tree) return fail(tree.error());
-    return std::make_unique<SurfaceBody>(shape.surface, *std::move(tree), settings, solver,
-                                         std::move(context), shape.factors);
+    return std::make_unique<TriangleBody>(shape.surface, *std::move(tree), settings, solver,
+                                          std::move(context), shape.factors);
   }
   return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
                                     shape.factors);

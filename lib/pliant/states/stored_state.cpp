@@ -262,7 +262,7 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   const StateParts parts = parts_of(state);
   append(bytes, number_of(parts));
   append(bytes, std::uint64_t{(facts.is_solved ? 1u : 0u) | (facts.is_surface ? 2u : 0u) |
-                              (facts.has_loose_piece ? 4u : 0u)});
+                              (facts.has_loose_patch ? 4u : 0u)});
   append(bytes, std::uint64_t{facts.forces.size()});
   for (const ForceFacts& of_force : facts.forces) {
     bytes += static_cast<char>(bits_of(of_force));
@@ -292,7 +292,7 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   const std::uint64_t flags = reader.number();
   stored.facts.is_solved = (flags & 1) != 0;
   stored.facts.is_surface = (flags & 2) != 0;
-  stored.facts.has_loose_piece = (flags & 4) != 0;
+  stored.facts.has_loose_patch = (flags & 4) != 0;
   const std::uint64_t force_count = reader.number();
   if (force_count > reader.left()) return {};
   for (std::uint64_t k = 0; k < force_count; ++k) {

@@ -13,7 +13,7 @@
 
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/triangles/triangle_plate.hpp"
-#include "pliant/region/surface/surface_cut.hpp"
+#include "pliant/region/triangles/triangle_cut.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 #include "support/plates.hpp"
@@ -37,7 +37,7 @@ std::vector<bool> at_border(const TriangleSurface& surface) {
 }
 
 // The part of a mesh nearer to the origin than `radius`.
-SurfacePiece piece_of(const Mesh& mesh, double radius, Border border) {
+TrianglePatch patch_of(const Mesh& mesh, double radius, Border border) {
   const TriangleSurface surface = make_surface(mesh, {.unit = std::array{1.0, 1.0}}).value();
   const SampledForce force{PointForce{{0.02, 0, 0.01}, {0, 1, 0}}, 1, radius, radius,
                            Falloff::Constant};
@@ -48,16 +48,16 @@ SurfacePiece piece_of(const Mesh& mesh, double radius, Border border) {
 
 struct Case {
   std::string name;
-  SurfacePiece piece;
+  TrianglePatch patch;
 };
 
 std::vector<Case> cases() {
-  return {{"whole, clamped", piece_of(square(6, 1, 0.3), 9, Border::Clamped)},
-          {"whole, free", piece_of(square(5, 1, 0.3), 9, Border::Free)},
-          {"quads, pinned", piece_of(square(5, 1, 0.3, true), 9, Border::Pinned)},
-          {"cut out of triangles", piece_of(square(8, 1, 0.3), 0.42, Border::Clamped)},
-          {"cut out of quads", piece_of(square(7, 1, 0.3, true), 0.42, Border::Clamped)},
-          {"a corner, free", piece_of(square(7, 1, 0.3, true), 0.6, Border::Free)}};
+  return {{"whole, clamped", patch_of(square(6, 1, 0.3), 9, Border::Clamped)},
+          {"whole, free", patch_of(square(5, 1, 0.3), 9, Border::Free)},
+          {"quads, pinned", patch_of(square(5, 1, 0.3, true), 9, Border::Pinned)},
+          {"cut out of triangles", patch_of(square(8, 1, 0.3), 0.42, Border::Clamped)},
+          {"cut out of quads", patch_of(square(7, 1, 0.3, true), 0.42, Border::Clamped)},
+          {"a corner, free", patch_of(square(7, 1, 0.3, true), 0.6, Border::Free)}};
 }
 
 std::shared_ptr<const CellFactors> uneven(const TriangleCells& cells) {
@@ -75,14 +75,14 @@ std::shared_ptr<const CellFactors> uneven(const TriangleCells& cells) {
   return std::make_shared<const CellFactors>(factors);
 }
 
-TriangleProblem problem_of(const SurfacePiece& piece, double hardening) {
+TriangleProblem problem_of(const TrianglePatch& patch, double hardening) {
   TriangleProblem problem;
   problem.bending = bending_of({1.5, 2.5, 2}, {1, 1}, 0.25);
   problem.dynamics = {0.002, 0.01};
   problem.slopes = {Vector3d(0.02, -0.1, 0.05), Vector3d(-0.03, 0.05, 0), Vector3d(0, 0.06, 0),
                     Vector3d(0.01, 0.02, -0.04)};
-  const Eigen::Map<const Eigen::VectorXd> masses(piece.masses.data(),
-                                                 static_cast<Eigen::Index>(piece.masses.size()));
+  const Eigen::Map<const Eigen::VectorXd> masses(patch.masses.data(),
+                                                 static_cast<Eigen::Index>(patch.masses.size()));
   Field even = 20 * Field::Random(masses.size(), 3);
   even.col(1).array() += 30;
   problem.load = masses.asDiagonal() * even;
@@ -309,8 +309,9 @@ class DenseTriangles {
   Eigen::MatrixXd by_moments_;  // the curvatures that moments on the triangles make
 };
 
-TrianglePlate plate_of(const SurfacePiece& piece, std::shared_ptr<const CellFactors> factors = {}) {
-  return {piece.cells, piece.masses, available_solvers().front(), {}, std::move(factors)};
+TrianglePlate plate_of(const TrianglePatch& patch,
+                       std::shared_ptr<const CellFactors> factors = {}) {
+  return {patch.cells, patch.masses, available_solvers().front(), {}, std::move(factors)};
 }
 
 }  // namespace
@@ -324,9 +325,9 @@ TEST_CASE("triangles that yield move as the dense fixed point", "[plate][plastic
         if (is_uneven && hardening > 1) continue;
         for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
           CAPTURE(one.name, hardening, is_uneven, static_cast<int>(integrator));
-          TriangleProblem problem = problem_of(one.piece, hardening);
-          TrianglePlate plate = plate_of(one.piece, is_uneven ? uneven(one.piece.cells) : nullptr);
-          TriangleState state = at_rest(one.piece.cells, problem.load.rows()), expected = state;
+          TriangleProblem problem = problem_of(one.patch, hardening);
+          TrianglePlate plate = plate_of(one.patch, is_uneven ? uneven(one.patch.cells) : nullptr);
+          TriangleState state = at_rest(one.patch.cells, problem.load.rows()), expected = state;
           DenseTriangles dense(plate, problem);
           const TimeSteps steps{2, 0.01, integrator};
           dense.assemble(state.displacement, steps.solved_length());
@@ -357,13 +358,13 @@ TEST_CASE("triangles that yield nowhere have the elastic bits", "[plate][plastic
   for (const Case& one : cases()) {
     for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
       CAPTURE(one.name);
-      TriangleProblem problem = problem_of(one.piece, 0.1);
+      TriangleProblem problem = problem_of(one.patch, 0.1);
       problem.law->yield = 1e6;
       const TimeSteps steps{4, 0.01, integrator};
-      const TriangleState start = at_rest(one.piece.cells, problem.load.rows());
-      const auto plastic = plate_of(one.piece).advance(problem, steps, start);
+      const TriangleState start = at_rest(one.patch.cells, problem.load.rows());
+      const auto plastic = plate_of(one.patch).advance(problem, steps, start);
       problem.law.reset();
-      const auto elastic = plate_of(one.piece).advance(problem, steps, start);
+      const auto elastic = plate_of(one.patch).advance(problem, steps, start);
       REQUIRE((plastic && elastic));
       CHECK(plastic->displacement == elastic->displacement);
       CHECK(plastic->velocity == elastic->velocity);
@@ -378,11 +379,11 @@ TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]")
   for (const Case& one : all) {
     for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
       CAPTURE(one.name, static_cast<int>(integrator));
-      TriangleProblem problem = problem_of(one.piece, 0.1);
+      TriangleProblem problem = problem_of(one.patch, 0.1);
       problem.dynamics.damping = 0;
       for (Vector3d& slope : problem.slopes) slope.setZero();
-      TrianglePlate plate = plate_of(one.piece);
-      TriangleState state = at_rest(one.piece.cells, problem.load.rows());
+      TrianglePlate plate = plate_of(one.patch);
+      TriangleState state = at_rest(one.patch.cells, problem.load.rows());
       state.displacement.setZero();
       state = *plate.advance(problem, {3, 0.01}, state);
       problem.load.setZero();
@@ -407,12 +408,12 @@ TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]")
 TEST_CASE("what steps of triangles learn ends with their frame", "[plate][plastic][morley]") {
   for (const Case& one : cases()) {
     CAPTURE(one.name);
-    TriangleProblem problem = problem_of(one.piece, 0.1);
-    TrianglePlate plate = plate_of(one.piece);
-    TriangleState state = at_rest(one.piece.cells, problem.load.rows()), other = state;
+    TriangleProblem problem = problem_of(one.patch, 0.1);
+    TrianglePlate plate = plate_of(one.patch);
+    TriangleState state = at_rest(one.patch.cells, problem.load.rows()), other = state;
     for (int frame = 0; frame < 3; ++frame) {
       state = *plate.advance(problem, {3, 0.01}, state);
-      other = *plate_of(one.piece).advance(problem, {3, 0.01}, other);
+      other = *plate_of(one.patch).advance(problem, {3, 0.01}, other);
       problem.load *= frame == 0 ? 1.2 : -0.5;
     }
     CHECK(largest(state.plastic) > 0.01);
@@ -422,18 +423,18 @@ TEST_CASE("what steps of triangles learn ends with their frame", "[plate][plasti
 }
 
 TEST_CASE("triangles flow alike in all directions", "[plate][plastic][morley]") {
-  const SurfacePiece piece = piece_of(square(7, 1, 0.3, true), 0.42, Border::Clamped);
+  const TrianglePatch patch = patch_of(square(7, 1, 0.3, true), 0.42, Border::Clamped);
   Matrix3d turn;
   turn << 2, -2, 1, 1, 2, 2, -2, -1, 2;
   turn /= 3;
   REQUIRE((turn * turn.transpose()).isIdentity(1e-12));
-  TriangleProblem problem = problem_of(piece, 0.1), turned = problem;
+  TriangleProblem problem = problem_of(patch, 0.1), turned = problem;
   turned.load = problem.load * turn.transpose();
   for (int k = 0; k < 4; ++k) turned.slopes[k] = turn * problem.slopes[k];
-  const TriangleState start = at_rest(piece.cells, problem.load.rows());
+  const TriangleState start = at_rest(patch.cells, problem.load.rows());
   TriangleState turned_start = start;
   turned_start.displacement = start.displacement * turn.transpose();
-  TrianglePlate plate = plate_of(piece);
+  TrianglePlate plate = plate_of(patch);
   const TriangleState state = *plate.advance(problem, {3, 0.01}, start);
   const TriangleState other = *plate.advance(turned, {3, 0.01}, turned_start);
   CHECK(largest(state.plastic) > 0.01);
@@ -467,22 +468,22 @@ TEST_CASE("triangles and a grid come to one dent", "[plate][plastic][morley]") {
   };
   const auto by_triangles = [&](int count, bool has_quads) {
     const Mesh mesh = square(count, 1, 0.2, has_quads);
-    const SurfacePiece piece = piece_of(mesh, 9, Border::Clamped);
+    const TrianglePatch patch = patch_of(mesh, 9, Border::Clamped);
     const int middle = (count + 1) * (count + 1) / 2;  // jittered: the peak is flat there
     int place = 0;
-    while (piece.points[place] != middle) ++place;
-    TrianglePlate plate = plate_of(piece);
+    while (patch.points[place] != middle) ++place;
+    TrianglePlate plate = plate_of(patch);
     TriangleProblem problem;
     problem.bending = bending_of(stiffness, {1, 1});
     problem.dynamics = {0, 0};
     problem.law = law;
-    TriangleState state = at_rest(piece.cells, static_cast<Eigen::Index>(piece.masses.size()));
+    TriangleState state = at_rest(patch.cells, static_cast<Eigen::Index>(patch.masses.size()));
     state.displacement.setZero();
     std::vector<double> heights;
     for (const double q : {2.0, 0.0}) {
-      problem.load = Field::Zero(static_cast<Eigen::Index>(piece.masses.size()), 3);
-      for (std::size_t k = 0; k < piece.masses.size(); ++k)
-        problem.load(static_cast<Eigen::Index>(k), 1) = q * piece.masses[k];
+      problem.load = Field::Zero(static_cast<Eigen::Index>(patch.masses.size()), 3);
+      for (std::size_t k = 0; k < patch.masses.size(); ++k)
+        problem.load(static_cast<Eigen::Index>(k), 1) = q * patch.masses[k];
       state = *plate.advance(problem, {1, 1}, state);
       heights.push_back(state.displacement(place, 1));
     }

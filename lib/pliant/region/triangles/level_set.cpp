@@ -1,4 +1,4 @@
-#include "pliant/region/surface/level_set.hpp"
+#include "pliant/region/triangles/level_set.hpp"
 
 #include <algorithm>
 #include <cmath>

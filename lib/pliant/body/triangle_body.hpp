@@ -9,7 +9,7 @@
 #include "pliant/mesh/triangles/point_tree.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/plate/triangles/triangle_plate.hpp"
-#include "pliant/region/surface/surface_load.hpp"
+#include "pliant/region/triangles/triangle_load.hpp"
 
 namespace pliant {
 
@@ -22,27 +22,27 @@ Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, 
 std::vector<double> means_on_triangles(const TriangleSurface& surface,
                                        const std::vector<double>& at_nodes);
 
-/// The factors of a piece's plate. Null: the material is even.
+/// The factors of a patch's plate. Null: the material is even.
 std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
-                                              const LevelSet& level_set, const SurfacePiece& piece,
+                                              const LevelSet& level_set, const TrianglePatch& patch,
                                               const NodeFactors* factors);
 
 /// One elastic surface as triangles, of any mesh. docs/model.md, "Surfaces".
-class SurfaceBody final : public Body {
+class TriangleBody final : public Body {
  public:
   /// Starts at rest. Requires: settings.reference is Rest. `solver` and `context` are those of its
   /// plates; the context's profile receives the times of its steps. `factors` null: the material is
   /// even.
-  SurfaceBody(const std::shared_ptr<const TriangleSurface>& surface, const BodySettings& settings,
-              SolverChoice solver = SolverChoice::Auto, RunContext context = {},
-              std::shared_ptr<const NodeFactors> factors = {})
-      : SurfaceBody(surface, PointTree(surface->rest), settings, solver, std::move(context),
-                    std::move(factors)) {}
+  TriangleBody(const std::shared_ptr<const TriangleSurface>& surface, const BodySettings& settings,
+               SolverChoice solver = SolverChoice::Auto, RunContext context = {},
+               std::shared_ptr<const NodeFactors> factors = {})
+      : TriangleBody(surface, PointTree(surface->rest), settings, solver, std::move(context),
+                     std::move(factors)) {}
 
   /// The same with the tree of the surface's nodes.
-  SurfaceBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
-              const BodySettings& settings, SolverChoice solver, RunContext context,
-              std::shared_ptr<const NodeFactors> factors);
+  TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
+               const BodySettings& settings, SolverChoice solver, RunContext context,
+               std::shared_ptr<const NodeFactors> factors);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
   Result<void> step(const BodyInputs& inputs) override;
@@ -55,8 +55,8 @@ class SurfaceBody final : public Body {
   const TriangleSurface& surface() const { return *surface_; }
 
  private:
-  // A piece while it is solved.
-  struct PieceSolve {
+  // A patch while it is solved.
+  struct PatchSolve {
     std::unique_ptr<TrianglePlate> plate;
     TriangleProblem problem;
     TriangleState state;
@@ -65,17 +65,17 @@ class SurfaceBody final : public Body {
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
-  Result<void> select_all(SurfaceSelection& selection) const;
+  Result<void> select_all(TriangleSelection& selection) const;
   Result<void> plan_on(const TriangleSurface& surface, const PointTree& tree,
                        const BodyInputs& inputs, StepPlan& plan) const;
   Result<void> weigh(const TriangleSurface& surface, const PointTree& tree,
-                     const BodyInputs& inputs, SurfaceSelection& selection) const;
+                     const BodyInputs& inputs, TriangleSelection& selection) const;
   void keep_plates();
   Result<void> solve(const BodyInputs& inputs);
-  Result<Dynamics> dynamics_of(const BodyInputs& inputs, const SurfacePiece& piece,
-                               PieceSolve& one) const;
-  TriangleState state_of(const SurfacePiece& piece) const;
-  void begin_load(const SurfacePiece& piece, TriangleProblem& problem) const;
+  Result<Dynamics> dynamics_of(const BodyInputs& inputs, const TrianglePatch& patch,
+                               PatchSolve& one) const;
+  TriangleState state_of(const TrianglePatch& patch) const;
+  void begin_load(const TrianglePatch& patch, TriangleProblem& problem) const;
   Result<void> take();
   void mark_unsettled();
 
@@ -86,7 +86,7 @@ class SurfaceBody final : public Body {
   SolverChoice solver_;
   RunContext context_;
   StepPlan plan_;
-  std::vector<PieceSolve> solves_;  // of the pieces that move, in their order
+  std::vector<PatchSolve> solves_;  // of the patches that move, in their order
   SolverCounts past_counts_;        // of the plates that are gone
   Field next_positions_, next_velocities_;
   LastPush next_push_;         // only if the body remembers it

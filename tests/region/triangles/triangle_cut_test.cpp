@@ -1,11 +1,11 @@
-#include "pliant/region/surface/surface_cut.hpp"
+#include "pliant/region/triangles/triangle_cut.hpp"
 
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <numeric>
 
-#include "pliant/region/surface/surface_load.hpp"
+#include "pliant/region/triangles/triangle_load.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
 
@@ -21,7 +21,7 @@ SampledForce ball(const Vector3d& center, double deformation_radius, double forc
 struct Cut {
   TriangleSurface surface;
   LevelSet level_set;
-  std::vector<SurfacePiece> pieces;
+  std::vector<TrianglePatch> patches;
 
   Cut(const Mesh& mesh, const std::vector<SampledForce>& forces, Border border = Border::Clamped)
       : surface(make_surface(mesh).value()) {
@@ -32,21 +32,21 @@ struct Cut {
       const auto p = surface.rest.row(node).cwiseAbs();
       is_border[node] = p.maxCoeff() >= 0.5 - 1e-9;  // of a square of side 1
     }
-    pieces = cut_out(surface, level_set, is_border, border).value();
+    patches = cut_out(surface, level_set, is_border, border).value();
   }
 
   double area() const {
     double sum = 0;
-    for (const SurfacePiece& piece : pieces) {
-      for (const TriangleCell& cell : piece.cells.cells) sum += cell.shape.signed_area();
+    for (const TrianglePatch& patch : patches) {
+      for (const TriangleCell& cell : patch.cells.cells) sum += cell.shape.signed_area();
     }
     return sum;
   }
 
   double mass() const {
     double sum = 0;
-    for (const SurfacePiece& piece : pieces) {
-      sum = std::accumulate(piece.masses.begin(), piece.masses.end(), sum);
+    for (const TrianglePatch& patch : patches) {
+      sum = std::accumulate(patch.masses.begin(), patch.masses.end(), sum);
     }
     return sum;
   }
@@ -59,7 +59,7 @@ TEST_CASE("a cut region has the area of the disc, better with finer meshes", "[r
     double before = 1;
     for (const int count : {10, 20, 40, 80}) {
       const Cut cut(square(count, 1, 0.3, has_quads), {ball({0, 0, 0}, 0.37)});
-      REQUIRE(cut.pieces.size() == 1);
+      REQUIRE(cut.patches.size() == 1);
       const double error = std::abs(cut.area() / (std::numbers::pi * 0.37 * 0.37) - 1);
       CHECK(error < 30.0 / (count * count));
       before = error;
@@ -71,21 +71,21 @@ TEST_CASE("a cut region has the area of the disc, better with finer meshes", "[r
 TEST_CASE("a region that is the whole surface is all of its triangles", "[region][surface]") {
   for (const bool has_quads : {false, true}) {
     const Cut cut(square(9, 1, 0.3, has_quads), {ball({0, 0, 0}, 5)}, Border::Free);
-    REQUIRE(cut.pieces.size() == 1);
-    const SurfacePiece& piece = cut.pieces[0];
-    CHECK(piece.cells.cells.size() == cut.surface.triangles.size());
+    REQUIRE(cut.patches.size() == 1);
+    const TrianglePatch& patch = cut.patches[0];
+    CHECK(patch.cells.cells.size() == cut.surface.triangles.size());
     CHECK(cut.area() == Approx(1));
     CHECK(cut.mass() == Approx(1));
-    CHECK(piece.free_nodes == 100);
-    CHECK_FALSE(piece.moves());  // nothing holds it
+    CHECK(patch.free_nodes == 100);
+    CHECK_FALSE(patch.moves());  // nothing holds it
     // A slope on each edge and each way to a centre.
-    CHECK(piece.cells.slope_count ==
+    CHECK(patch.cells.slope_count ==
           cut.surface.edge_count() + (has_quads ? 4 * cut.surface.face_count() : 0));
     const Cut held(square(9, 1, 0.3, has_quads), {ball({0, 0, 0}, 5)});
-    CHECK(held.pieces[0].free_nodes == 64);
-    CHECK(held.pieces[0].counts(held.level_set).held_nodes == 36);
-    CHECK(held.pieces[0].moves());
-    CHECK(held.pieces[0].cells.slope_count == piece.cells.slope_count - 36);
+    CHECK(held.patches[0].free_nodes == 64);
+    CHECK(held.patches[0].counts(held.level_set).held_nodes == 36);
+    CHECK(held.patches[0].moves());
+    CHECK(held.patches[0].cells.slope_count == patch.cells.slope_count - 36);
   }
 }
 
@@ -95,8 +95,8 @@ TEST_CASE("no cell of a cut is a sliver of its triangle", "[region][surface]") {
     const auto chance = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
     const Cut cut(square(12, 1, 0, trial % 2 == 1),
                   {ball({0.4 * chance(), 0, 0.4 * chance()}, 0.3 + 0.1 * chance())});
-    for (const SurfacePiece& piece : cut.pieces) {
-      for (const TriangleCell& cell : piece.cells.cells) {
+    for (const TrianglePatch& patch : cut.patches) {
+      for (const TriangleCell& cell : patch.cells.cells) {
         CHECK(cell.shape.signed_area() > 0.5 / 144 * 0.1 * 0.1 / 4);
       }
     }
@@ -105,7 +105,7 @@ TEST_CASE("no cell of a cut is a sliver of its triangle", "[region][surface]") {
 
 TEST_CASE("each side of a cell has its slope, or it is given", "[region][surface]") {
   const Cut cut(square(12, 1, 0.3), {ball({0.3, 0, 0.1}, 0.35)});  // it reaches the border
-  const TriangleCells& cells = cut.pieces[0].cells;
+  const TriangleCells& cells = cut.patches[0].cells;
   std::vector<double> sums(cells.slope_count, 0);
   std::vector<int> uses(cells.slope_count, 0);
   int given = 0;
@@ -125,11 +125,11 @@ TEST_CASE("each side of a cell has its slope, or it is given", "[region][surface
 
 TEST_CASE("spheres that do not meet cut out pieces", "[region][surface]") {
   const Cut cut(square(20, 1, 0.2), {ball({-0.25, 0, 0}, 0.15), ball({0.25, 0, 0}, 0.15)});
-  CHECK(cut.pieces.size() == 2);
+  CHECK(cut.patches.size() == 2);
   const Cut joined(square(20, 1, 0.2), {ball({-0.1, 0, 0}, 0.15), ball({0.1, 0, 0}, 0.15)});
-  CHECK(joined.pieces.size() == 1);
+  CHECK(joined.patches.size() == 1);
   const Cut none(square(20, 1, 0.2), {ball({0, 3, 0}, 0.15)});
-  CHECK(none.pieces.empty());
+  CHECK(none.patches.empty());
 }
 
 TEST_CASE("at a branch the slopes of three cells add up to 0", "[region][surface]") {
@@ -144,8 +144,8 @@ TEST_CASE("at a branch the slopes of three cells add up to 0", "[region][surface
                              {-1, -1, 1}},
                             {{0, 1, 3}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}, {0, 1, 7}, {0, 7, 6}});
   const Cut cut(mesh, {ball({0, 0, 0}, 9)}, Border::Free);
-  REQUIRE(cut.pieces.size() == 1);
-  const TriangleCells& cells = cut.pieces[0].cells;
+  REQUIRE(cut.patches.size() == 1);
+  const TriangleCells& cells = cut.patches[0].cells;
   const SideSlope &a = cells.cells[0].slopes[0], &b = cells.cells[2].slopes[0],
                   &c = cells.cells[4].slopes[0];
   CHECK(a == SideSlope{a.first, 1, 1});
@@ -183,7 +183,7 @@ TEST_CASE("the area of a load changes evenly while its force slides", "[region][
     const SampledForce force = ball({x, 0, 0.03}, 5, 0.2);
     const Cut cut(mesh, {force});
     const PlacedNodes nodes(cut.surface.rest);
-    SurfaceLoads loads(cut.level_set, cut.pieces, nodes);
+    TriangleLoads loads(cut.level_set, cut.patches, nodes);
     REQUIRE(loads.compute(force));
     const double area = loads.push().sum.y() / (std::numbers::pi * 0.04);
     least = std::min(least, area), most = std::max(most, area);
@@ -198,10 +198,10 @@ TEST_CASE("a load of everything is the mass", "[region][surface]") {
     const SampledForce force = ball({0.1, 0, 0}, 0.35, 9);
     const Cut cut(square(12, 1, 0.3, has_quads), {force});
     const PlacedNodes nodes(cut.surface.rest);
-    SurfaceLoads loads(cut.level_set, cut.pieces, nodes);
+    TriangleLoads loads(cut.level_set, cut.patches, nodes);
     REQUIRE(loads.compute(force));
-    for (int k = 0; k < cut.pieces[0].free_nodes; ++k) {
-      CHECK(loads.loads(0)(k, 1) == Approx(cut.pieces[0].masses[k]).epsilon(1e-12));
+    for (int k = 0; k < cut.patches[0].free_nodes; ++k) {
+      CHECK(loads.loads(0)(k, 1) == Approx(cut.patches[0].masses[k]).epsilon(1e-12));
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "pliant/region/surface/surface_cut.hpp"
+#include "pliant/region/triangles/triangle_cut.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,7 +39,7 @@ struct Point {
   bool is_free = false;
 };
 
-// The cells of a region, before they are separated into pieces. Points are numbered in the order
+// The cells of a region, before they are separated into patches. Points are numbered in the order
 // in which cells meet them.
 class Cutting {
  public:
@@ -257,8 +257,8 @@ class Cutting {
   int block_count_ = 0;
 };
 
-// The piece of each cell, in the order of their first cells.
-std::vector<int> pieces_of(const Cutting& cutting, int& count) {
+// The patch of each cell, in the order of their first cells.
+std::vector<int> patches_of(const Cutting& cutting, int& count) {
   std::vector<int> parents(cutting.points.size());
   std::iota(parents.begin(), parents.end(), 0);
   const auto first_of = [&](int point) {
@@ -269,26 +269,26 @@ std::vector<int> pieces_of(const Cutting& cutting, int& count) {
     const int first = first_of(cell.points[0]);
     for (const int other : {cell.points[1], cell.points[2]}) parents[first_of(other)] = first;
   }
-  std::vector<int> numbers(parents.size(), -1), pieces;
+  std::vector<int> numbers(parents.size(), -1), patches;
   count = 0;
   for (const TriangleCell& cell : cutting.cells) {
     int& number = numbers[first_of(cell.points[0])];
     if (number < 0) number = count++;
-    pieces.push_back(number);
+    patches.push_back(number);
   }
-  return pieces;
+  return patches;
 }
 
-// The order of a piece's points: free nodes, all else that is free, held nodes, and the rest.
+// The order of a patch's points: free nodes, all else that is free, held nodes, and the rest.
 int rank_of(const Point& point) { return (point.is_free ? 0 : 2) + (point.node < 0 ? 1 : 0); }
 
-// Separates the cells of a cutting into pieces.
+// Separates the cells of a cutting into patches.
 class Separating {
  public:
   Separating(const Cutting& cutting, Border border) : cutting_(cutting), border_(border) {
     int count = 0;
-    cell_pieces_ = pieces_of(cutting, count);
-    pieces.resize(count);
+    cell_patches_ = patches_of(cutting, count);
+    patches.resize(count);
   }
 
   // Unfinished if it is stopped.
@@ -298,7 +298,7 @@ class Separating {
     cell_places_.reserve(cutting_.cells.size());
     for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
       if (poll.after(32)) return;
-      TriangleCells& cells = pieces[cell_pieces_[k]].cells;
+      TriangleCells& cells = patches[cell_patches_[k]].cells;
       const bool goes_on = k > 0 && cutting_.blocks[k] == cutting_.blocks[k - 1];
       if (!goes_on) cells.block_starts.push_back(0);
       cells.block_starts.back() = static_cast<int>(cells.cells.size()) + 1;
@@ -314,13 +314,13 @@ class Separating {
     }
   }
 
-  std::vector<SurfacePiece> pieces;
+  std::vector<TrianglePatch> patches;
 
  private:
   void number_points(StopPoll& poll) {
-    std::vector<int> point_pieces(cutting_.points.size(), -1);
+    std::vector<int> point_patches(cutting_.points.size(), -1);
     for (std::size_t k = 0; k < cutting_.cells.size(); ++k) {
-      for (const int point : cutting_.cells[k].points) point_pieces[point] = cell_pieces_[k];
+      for (const int point : cutting_.cells[k].points) point_patches[point] = cell_patches_[k];
     }
     std::vector<int> order(cutting_.points.size());
     std::iota(order.begin(), order.end(), 0);
@@ -332,19 +332,19 @@ class Separating {
     places_.resize(cutting_.points.size());
     for (const int k : order) {
       const Point& point = cutting_.points[k];
-      SurfacePiece& piece = pieces[point_pieces[k]];
-      places_[k] = piece.cells.point_count++;
-      piece.cells.free_points += point.is_free ? 1 : 0;
-      piece.free_nodes += rank_of(point) == 0 ? 1 : 0;
+      TrianglePatch& patch = patches[point_patches[k]];
+      places_[k] = patch.cells.point_count++;
+      patch.cells.free_points += point.is_free ? 1 : 0;
+      patch.free_nodes += rank_of(point) == 0 ? 1 : 0;
       if (point.node >= 0) {
-        piece.points.push_back(point.node);
+        patch.points.push_back(point.node);
         continue;
       }
-      piece.points.push_back(-1 - static_cast<int>(piece.cut_points.size()));
-      piece.cut_points.push_back(point.cut);
+      patch.points.push_back(-1 - static_cast<int>(patch.cut_points.size()));
+      patch.cut_points.push_back(point.cut);
     }
-    for (SurfacePiece& piece : pieces) {
-      for (CutPoint& point : piece.cut_points) {
+    for (TrianglePatch& patch : patches) {
+      for (CutPoint& point : patch.cut_points) {
         if (point.kind != CutPoint::Kind::Part) continue;
         for (int& corner : point.of) corner = places_[corner];
       }
@@ -357,7 +357,7 @@ class Separating {
     const int whole = cutting_.sides_on(joints[0].line);
     const bool is_given = count < whole || (whole == 1 && border_ == Border::Clamped);
     if (is_given) return;
-    TriangleCells& cells = pieces[cell_pieces_[joints[0].cell]].cells;
+    TriangleCells& cells = patches[cell_patches_[joints[0].cell]].cells;
     const int first = cells.slope_count;
     cells.slope_count += std::max(count - 1, 1);
     for (int k = 0; k < count; ++k) {
@@ -367,20 +367,20 @@ class Separating {
   }
 
   SideSlope& slope_of(const Joint& joint) {
-    TriangleCells& cells = pieces[cell_pieces_[joint.cell]].cells;
+    TriangleCells& cells = patches[cell_patches_[joint.cell]].cells;
     return cells.cells[cell_places_[joint.cell]].slopes[joint.side];
   }
 
   const Cutting& cutting_;
   Border border_;
-  std::vector<int> cell_pieces_;  // the piece of each cell
-  std::vector<int> cell_places_;  // its place among the cells of its piece
-  std::vector<int> places_;       // the place of each point among those of its piece
+  std::vector<int> cell_patches_;  // the patch of each cell
+  std::vector<int> cell_places_;   // its place among the cells of its patch
+  std::vector<int> places_;        // the place of each point among those of its patch
 };
 
 }  // namespace
 
-CutCounts SurfacePiece::counts(const LevelSet& level_set) const {
+CutCounts TrianglePatch::counts(const LevelSet& level_set) const {
   CutCounts counts{.cells = static_cast<int>(cells.cells.size())};
   for (std::size_t k = 0; k < points.size(); ++k) {
     if (points[k] < 0) continue;
@@ -390,7 +390,7 @@ CutCounts SurfacePiece::counts(const LevelSet& level_set) const {
   return counts;
 }
 
-CutCounts SurfacePiece::counts_of(const std::vector<bool>& within) const {
+CutCounts TrianglePatch::counts_of(const std::vector<bool>& within) const {
   const auto is_within = [&](int point) { return points[point] >= 0 && within[points[point]]; };
   CutCounts counts;
   for (int point = 0; point < cells.point_count; ++point) {
@@ -404,34 +404,35 @@ CutCounts SurfacePiece::counts_of(const std::vector<bool>& within) const {
   return counts;
 }
 
-Result<std::vector<SurfacePiece>> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
-                                          const std::vector<bool>& is_border, Border border,
-                                          const StopRequest& should_stop) {
+Result<std::vector<TrianglePatch>> cut_out(const TriangleSurface& surface,
+                                           const LevelSet& level_set,
+                                           const std::vector<bool>& is_border, Border border,
+                                           const StopRequest& should_stop) {
   StopPoll poll(should_stop);
   Cutting cutting(surface, level_set, is_border, border);
   cutting.run(poll);
   if (poll.after(0)) return interrupted();
   Separating separating(cutting, border);
   separating.run(poll);
-  for (SurfacePiece& piece : separating.pieces) {
-    if (poll.after(100 * piece.cells.cells.size())) return interrupted();
-    std::vector<double> areas(static_cast<std::size_t>(piece.cells.point_count), 0);
-    for (const TriangleCell& cell : piece.cells.cells) {
+  for (TrianglePatch& patch : separating.patches) {
+    if (poll.after(100 * patch.cells.cells.size())) return interrupted();
+    std::vector<double> areas(static_cast<std::size_t>(patch.cells.point_count), 0);
+    for (const TriangleCell& cell : patch.cells.cells) {
       const double third = std::abs(cell.shape.signed_area()) / 3;
       for (const int point : cell.points) areas[point] += third;
     }
-    piece.masses = shared_out(piece, level_set, std::move(areas));
+    patch.masses = shared_out(patch, level_set, std::move(areas));
   }
   if (poll.after(0)) return interrupted();
-  return std::move(separating.pieces);
+  return std::move(separating.patches);
 }
 
-std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_set,
+std::vector<double> shared_out(const TrianglePatch& patch, const LevelSet& level_set,
                                std::vector<double> at_points) {
   const auto each_cut_point = [&](CutPoint::Kind kind, const auto& hand_on) {
-    for (std::size_t k = 0; k < piece.points.size(); ++k) {
-      if (piece.points[k] >= 0) continue;
-      const CutPoint& point = piece.cut_points[-1 - piece.points[k]];
+    for (std::size_t k = 0; k < patch.points.size(); ++k) {
+      if (patch.points[k] >= 0) continue;
+      const CutPoint& point = patch.cut_points[-1 - patch.points[k]];
       if (point.kind == kind) hand_on(point, at_points[k]);
     }
   };
@@ -439,7 +440,7 @@ std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_
     for (const int corner : point.of) at_points[corner] += 0.25 * share;
   });
   std::vector<int> places(level_set.nodes.size(), -1);  // of the free nodes among the points
-  for (int k = 0; k < piece.free_nodes; ++k) places[piece.points[k]] = k;
+  for (int k = 0; k < patch.free_nodes; ++k) places[patch.points[k]] = k;
   each_cut_point(CutPoint::Kind::Centre, [&](const CutPoint& point, double share) {
     const std::span<const int> corners = level_set.corners_of(static_cast<std::size_t>(point.face));
     for (const int corner : corners) {
@@ -447,23 +448,23 @@ std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_
       at_points[places[corner]] += share / static_cast<double>(corners.size());
     }
   });
-  at_points.resize(static_cast<std::size_t>(piece.free_nodes));
+  at_points.resize(static_cast<std::size_t>(patch.free_nodes));
   return at_points;
 }
 
-std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const double> at_nodes,
+std::vector<double> values_at_points(const TrianglePatch& patch, std::span<const double> at_nodes,
                                      std::span<const double> at_centres) {
   const auto at_end = [&](int end) { return end >= 0 ? at_nodes[end] : at_centres[-1 - end]; };
-  std::vector<double> at(piece.points.size());
+  std::vector<double> at(patch.points.size());
   const auto each_point = [&](const auto& f) {
-    for (std::size_t k = 0; k < piece.points.size(); ++k) f(k, piece.points[k]);
+    for (std::size_t k = 0; k < patch.points.size(); ++k) f(k, patch.points[k]);
   };
   each_point([&](std::size_t k, int point) {
     if (point >= 0) {
       at[k] = at_nodes[point];
       return;
     }
-    const CutPoint& cut = piece.cut_points[-1 - point];
+    const CutPoint& cut = patch.cut_points[-1 - point];
     if (cut.kind == CutPoint::Kind::Centre) {
       at[k] = at_centres[cut.face];
     } else if (cut.kind == CutPoint::Kind::Rim) {
@@ -472,8 +473,8 @@ std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const 
     }
   });
   each_point([&](std::size_t k, int point) {
-    if (point >= 0 || piece.cut_points[-1 - point].kind != CutPoint::Kind::Part) return;
-    const std::array<int, 4>& of = piece.cut_points[-1 - point].of;
+    if (point >= 0 || patch.cut_points[-1 - point].kind != CutPoint::Kind::Part) return;
+    const std::array<int, 4>& of = patch.cut_points[-1 - point].of;
     at[k] = 0.25 * (at[of[0]] + at[of[1]] + at[of[2]] + at[of[3]]);
   });
   return at;

@@ -1,4 +1,4 @@
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -69,14 +69,14 @@ std::vector<double> means_on_triangles(const TriangleSurface& surface,
 }
 
 std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
-                                              const LevelSet& level_set, const SurfacePiece& piece,
+                                              const LevelSet& level_set, const TrianglePatch& patch,
                                               const NodeFactors* factors) {
   if (!factors) return nullptr;
   CellFactors own;
   const auto at_points = [&](const std::vector<double>& at_nodes) {
     std::vector<double> at;
-    for (int k = 0; !at_nodes.empty() && k < piece.free_nodes; ++k) {
-      const int node = level_set.nodes[static_cast<std::size_t>(piece.points[k])];
+    for (int k = 0; !at_nodes.empty() && k < patch.free_nodes; ++k) {
+      const int node = level_set.nodes[static_cast<std::size_t>(patch.points[k])];
       at.push_back(at_nodes[static_cast<std::size_t>(node)]);
     }
     return at;
@@ -84,8 +84,8 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   const auto at_cells = [&](const std::vector<double>& at_nodes) {
     const std::vector<double> means = means_on_triangles(surface, at_nodes);
     std::vector<double> at;
-    for (std::size_t k = 0; !means.empty() && k < piece.cells.cells.size(); ++k)
-      at.push_back(means[static_cast<std::size_t>(piece.cells.cells[k].triangle)]);
+    for (std::size_t k = 0; !means.empty() && k < patch.cells.cells.size(); ++k)
+      at.push_back(means[static_cast<std::size_t>(patch.cells.cells[k].triangle)]);
     return at;
   };
   own.density = at_points(factors->density);
@@ -97,7 +97,7 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
     std::vector<double> at;
     const std::vector<double> means = means_on_triangles(surface, at_nodes);
     if (means.empty()) return at;
-    for (const int triangle : triangles_of(piece.cells))
+    for (const int triangle : triangles_of(patch.cells))
       at.push_back(means[static_cast<std::size_t>(triangle)]);
     return at;
   };
@@ -106,9 +106,9 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   return std::make_shared<const CellFactors>(std::move(own));
 }
 
-SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
-                         const BodySettings& settings, SolverChoice solver, RunContext context,
-                         std::shared_ptr<const NodeFactors> factors)
+TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
+                           const BodySettings& settings, SolverChoice solver, RunContext context,
+                           std::shared_ptr<const NodeFactors> factors)
     : Body(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
            std::move(factors)),
       surface_(std::move(surface)),
@@ -121,19 +121,19 @@ SurfaceBody::SurfaceBody(std::shared_ptr<const TriangleSurface> surface, PointTr
   PLIANT_EXPECTS(settings.reference == Reference::Rest);
 }
 
-SolverCounts SurfaceBody::solver_counts() const {
+SolverCounts TriangleBody::solver_counts() const {
   SolverCounts counts = past_counts_;
-  for (const PieceSolve& one : solves_) counts = counts + one.plate->counts();
+  for (const PatchSolve& one : solves_) counts = counts + one.plate->counts();
   return counts;
 }
 
-Result<StepPlan> SurfaceBody::look(const BodyInputs& inputs) const {
-  StepPlan next = plan_;  // pieces that stay need not be cut out again
+Result<StepPlan> TriangleBody::look(const BodyInputs& inputs) const {
+  StepPlan next = plan_;  // patches that stay need not be cut out again
   if (auto planned = plan(inputs, next); !planned) return fail(planned.error());
   return next;
 }
 
-Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
+Result<void> TriangleBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
   PLIANT_EXPECTS(fits(inputs));
   if (!settings_.is_animated) return plan_on(*surface_, tree_, inputs, plan);
   const TriangleSurface moved = posed(*surface_, *inputs.shape);
@@ -143,14 +143,14 @@ Result<void> SurfaceBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
 }
 
 // `surface` and `tree` are those at the frame.
-Result<void> SurfaceBody::plan_on(const TriangleSurface& surface, const PointTree& tree,
-                                  const BodyInputs& inputs, StepPlan& plan) const {
+Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTree& tree,
+                                   const BodyInputs& inputs, StepPlan& plan) const {
   if (!plan.surface) plan.surface.emplace();
-  SurfaceSelection& selection = *plan.surface;
+  TriangleSelection& selection = *plan.surface;
   plan.steps = steps_of(inputs, settings_, factors_.get());
   plan.is_whole = settings_.region == SolvedRegion::All;
   if (plan.is_whole) {
-    if (selection.pieces.empty()) {
+    if (selection.patches.empty()) {
       if (auto selected = select_all(selection); !selected) return selected;
     }
     return weigh(surface, tree, inputs, selection);
@@ -171,33 +171,33 @@ Result<void> SurfaceBody::plan_on(const TriangleSurface& surface, const PointTre
       if (!is_at_rest && !(level_set.at_node(node) > 0)) plan.settling.push_back(node);
     }
   }
-  if (selection.pieces.empty() || !(selection.level_set == level_set)) {
+  if (selection.patches.empty() || !(selection.level_set == level_set)) {
     selection.level_set = std::move(level_set);
-    selection.pieces.clear();
-    auto pieces =
+    selection.patches.clear();
+    auto patches =
         cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
-    if (!pieces) return fail(pieces.error());
-    selection.pieces = *std::move(pieces);
+    if (!patches) return fail(patches.error());
+    selection.patches = *std::move(patches);
   }
   return weigh(surface, tree, inputs, selection);
 }
 
-// Pieces that nothing holds move too.
-Result<void> SurfaceBody::select_all(SurfaceSelection& selection) const {
+// Patches that nothing holds move too.
+Result<void> TriangleBody::select_all(TriangleSelection& selection) const {
   std::vector<int> nodes(static_cast<std::size_t>(surface_->node_count()));
   std::iota(nodes.begin(), nodes.end(), 0);
   selection.level_set = with_inside(*surface_, {}, nodes);
-  auto pieces =
+  auto patches =
       cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
-  if (!pieces) return fail(pieces.error());
-  selection.pieces = *std::move(pieces);
-  for (SurfacePiece& piece : selection.pieces) piece.may_float = true;
+  if (!patches) return fail(patches.error());
+  selection.patches = *std::move(patches);
+  for (TrianglePatch& patch : selection.patches) patch.may_float = true;
   return {};
 }
 
 // Computes the loads, and what each force does.
-Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree& tree,
-                                const BodyInputs& inputs, SurfaceSelection& selection) const {
+Result<void> TriangleBody::weigh(const TriangleSurface& surface, const PointTree& tree,
+                                 const BodyInputs& inputs, TriangleSelection& selection) const {
   Field room;
   const PlacedNodes nodes(measured(inputs, room), inputs.transform, densities());
   const PlacedNodes rest_nodes(surface.rest, inputs.transform, densities());
@@ -207,23 +207,23 @@ Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree&
     }
   }
   selection.loads.clear();
-  for (const SurfacePiece& piece : selection.pieces) {
-    selection.loads.push_back(Field::Zero(piece.free_nodes, 3));
+  for (const TrianglePatch& patch : selection.patches) {
+    selection.loads.push_back(Field::Zero(patch.free_nodes, 3));
   }
   selection.forces.assign(inputs.forces.size(), {});
-  SurfaceLoads loads(selection.level_set, selection.pieces, nodes);
+  TriangleLoads loads(selection.level_set, selection.patches, nodes);
   for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
     if (context_.is_stopped()) return interrupted();
     const SampledForce& force = inputs.forces[k];
-    SurfaceForceSelection& told = selection.forces[k];
+    TriangleForceSelection& told = selection.forces[k];
     const auto reach = [&](double radius, bool with_faces) {
       return reaches(surface, tree, inputs.transform, force, radius, with_faces);
     };
     told.selects = inputs.selectors.empty() || inputs.selectors[k] == static_cast<int>(k);
     const std::vector<bool> within =
         nodes_within(surface, selection.level_set, inputs.transform, force);
-    for (const SurfacePiece& piece : selection.pieces) {
-      told.counts = told.counts + piece.counts_of(within);
+    for (const TrianglePatch& patch : selection.patches) {
+      told.counts = told.counts + patch.counts_of(within);
     }
     const double radius = force.deformation_radius;
     told.is_near =
@@ -231,11 +231,11 @@ Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree&
     told.acts_inside = loads.compute(force);
     told.acts_outside = !told.acts_inside && reach(force.force_radius, false);
     if (!told.acts_inside && settings_.measure == Measure::Current) {
-      SurfaceLoads at_rest(selection.level_set, selection.pieces, rest_nodes);
+      TriangleLoads at_rest(selection.level_set, selection.patches, rest_nodes);
       told.is_lost = at_rest.compute(force);
     }
-    for (std::size_t n = 0; n < selection.pieces.size(); ++n) {
-      if (!selection.pieces[n].moves()) continue;
+    for (std::size_t n = 0; n < selection.patches.size(); ++n) {
+      if (!selection.patches[n].moves()) continue;
       selection.loads[n] += loads.loads(n);
     }
     told.push = loads.push();
@@ -243,7 +243,7 @@ Result<void> SurfaceBody::weigh(const TriangleSurface& surface, const PointTree&
   return {};
 }
 
-Result<void> SurfaceBody::step(const BodyInputs& inputs) {
+Result<void> TriangleBody::step(const BodyInputs& inputs) {
   if (inputs.forces.empty() && waits_for_forces()) {
     plan_ = {};
     return {};
@@ -269,39 +269,39 @@ Result<void> SurfaceBody::step(const BodyInputs& inputs) {
   return take();
 }
 
-// Makes a plate of each piece that moves; one whose cells are those of an earlier plate keeps it.
-void SurfaceBody::keep_plates() {
-  std::vector<PieceSolve> earlier = std::exchange(solves_, {});
-  for (const SurfacePiece& piece : plan_.surface->pieces) {
-    if (!piece.moves()) continue;
-    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const PieceSolve& one) {
-      return one.plate && one.plate->cells() == piece.cells && one.plate->masses() == piece.masses;
+// Makes a plate of each patch that moves; one whose cells are those of an earlier plate keeps it.
+void TriangleBody::keep_plates() {
+  std::vector<PatchSolve> earlier = std::exchange(solves_, {});
+  for (const TrianglePatch& patch : plan_.surface->patches) {
+    if (!patch.moves()) continue;
+    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const PatchSolve& one) {
+      return one.plate && one.plate->cells() == patch.cells && one.plate->masses() == patch.masses;
     });
-    solves_.push_back(same != earlier.end() ? std::move(*same) : PieceSolve{});
+    solves_.push_back(same != earlier.end() ? std::move(*same) : PatchSolve{});
   }
   // Plates that are gone make room for new ones.
-  for (PieceSolve& one : earlier) {
+  for (PatchSolve& one : earlier) {
     if (one.plate) past_counts_ = past_counts_ + one.plate->counts();
     one.plate.reset();
   }
   std::size_t place = 0;
-  for (const SurfacePiece& piece : plan_.surface->pieces) {
-    if (!piece.moves()) continue;
+  for (const TrianglePatch& patch : plan_.surface->patches) {
+    if (!patch.moves()) continue;
     std::unique_ptr<TrianglePlate>& plate = solves_[place++].plate;
     if (plate) continue;
     plate = std::make_unique<TrianglePlate>(
-        piece.cells, piece.masses, solver_, context_,
-        factors_of(*surface_, plan_.surface->level_set, piece, factors_.get()));
+        patch.cells, patch.masses, solver_, context_,
+        factors_of(*surface_, plan_.surface->level_set, patch, factors_.get()));
   }
 }
 
-// Those of a piece: with a damping ratio, its slowest vibration decides.
-Result<Dynamics> SurfaceBody::dynamics_of(const BodyInputs& inputs, const SurfacePiece& piece,
-                                          PieceSolve& one) const {
+// Those of a patch: with a damping ratio, its slowest vibration decides.
+Result<Dynamics> TriangleBody::dynamics_of(const BodyInputs& inputs, const TrianglePatch& patch,
+                                           PatchSolve& one) const {
   if (!inputs.asks_for_vibrations()) return inputs.dynamics;
   const StageTimer timer(context_.profile, Stage::SetUp);
   if (!one.lambda || one.bending != one.problem.bending) {
-    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, piece.is_held());
+    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, patch.is_held());
     if (!lambda) return fail(lambda.error());
     one.lambda = *lambda;
     one.bending = one.problem.bending;
@@ -309,24 +309,24 @@ Result<Dynamics> SurfaceBody::dynamics_of(const BodyInputs& inputs, const Surfac
   return damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, *one.lambda);
 }
 
-Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
-  const SurfaceSelection& selection = *plan_.surface;
+Result<void> TriangleBody::solve(const BodyInputs& inputs) {
+  const TriangleSelection& selection = *plan_.surface;
   const auto slopes_of = [&](const EdgeTangents& tangents) -> std::array<Vector3d, 4> {
     return {tangents.su0 / surface_->unit[0], tangents.su1 / surface_->unit[0],
             tangents.sv0 / surface_->unit[1], tangents.sv1 / surface_->unit[1]};
   };
   std::size_t place = 0;
-  for (std::size_t k = 0; k < selection.pieces.size(); ++k) {
-    const SurfacePiece& piece = selection.pieces[k];
-    if (!piece.moves()) continue;
-    PieceSolve& one = solves_[place++];
+  for (std::size_t k = 0; k < selection.patches.size(); ++k) {
+    const TrianglePatch& patch = selection.patches[k];
+    if (!patch.moves()) continue;
+    PatchSolve& one = solves_[place++];
     one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
-    const auto dynamics = dynamics_of(inputs, piece, one);
+    const auto dynamics = dynamics_of(inputs, patch, one);
     if (!dynamics) return fail(dynamics.error());
-    if (!piece.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {
+    if (!patch.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {
       return fail(ErrorCode::SolverFailed,
                   "nothing holds the piece with node " +
-                      std::to_string(selection.level_set.nodes[piece.points[0]]) +
+                      std::to_string(selection.level_set.nodes[patch.points[0]]) +
                       ", which is static: give it a density or a damping");
     }
     one.problem.dynamics = *dynamics;
@@ -334,10 +334,10 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     one.problem.slopes = slopes_of(inputs.tangents);
     one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
     if (remembers_push()) {
-      begin_load(piece, one.problem);
+      begin_load(patch, one.problem);
       one.problem.first_slopes = slopes_of(first_tangents(inputs.tangents));
     }
-    one.state = state_of(piece);
+    one.state = state_of(patch);
     if (settings_.yields) {
       const std::vector<int>& triangles = one.plate->triangles();
       one.state.plastic.resize(static_cast<Eigen::Index>(triangles.size()), 9);
@@ -347,7 +347,7 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
     auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
     if (!next) {
       Error error = next.error();
-      const int node = selection.level_set.nodes[piece.points[0]];
+      const int node = selection.level_set.nodes[patch.points[0]];
       if (error.code == ErrorCode::SolverFailed) {
         error.message += ", on the piece with node " + std::to_string(node);
       }
@@ -358,18 +358,18 @@ Result<void> SurfaceBody::solve(const BodyInputs& inputs) {
   return {};
 }
 
-// The load that a piece begins with: that of the last solve, at nodes which it moved.
-void SurfaceBody::begin_load(const SurfacePiece& piece, TriangleProblem& problem) const {
+// The load that a patch begins with: that of the last solve, at nodes which it moved.
+void TriangleBody::begin_load(const TrianglePatch& patch, TriangleProblem& problem) const {
   problem.first_load = problem.load;
-  for (int k = 0; k < piece.free_nodes; ++k) {
-    const int node = plan_.surface->level_set.nodes[piece.points[k]];
+  for (int k = 0; k < patch.free_nodes; ++k) {
+    const int node = plan_.surface->level_set.nodes[patch.points[k]];
     if (state_.last.unknowns[static_cast<std::size_t>(node)])
       problem.first_load.row(k) = state_.last.loads.row(node);
   }
 }
 
-// Displacement and velocity of a piece's points.
-TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
+// Displacement and velocity of a patch's points.
+TriangleState TriangleBody::state_of(const TrianglePatch& patch) const {
   const LevelSet& level_set = plan_.surface->level_set;
   const auto at_node = [&](int k) -> Eigen::RowVector3d {
     const int node = level_set.nodes[k];
@@ -386,40 +386,40 @@ TriangleState SurfaceBody::state_of(const SurfacePiece& piece) const {
     }
     return count > 0 ? Eigen::RowVector3d(sum / count) : sum;
   };
-  TriangleState state{Field::Zero(piece.cells.point_count, 3), Field(piece.free_nodes, 3)};
-  for (std::size_t k = 0; k < piece.points.size(); ++k) {
+  TriangleState state{Field::Zero(patch.cells.point_count, 3), Field(patch.free_nodes, 3)};
+  for (std::size_t k = 0; k < patch.points.size(); ++k) {
     auto row = state.displacement.row(static_cast<Eigen::Index>(k));
-    if (piece.points[k] >= 0) {
-      row = at_node(piece.points[k]);
+    if (patch.points[k] >= 0) {
+      row = at_node(patch.points[k]);
       continue;
     }
-    const CutPoint& point = piece.cut_points[-1 - piece.points[k]];
+    const CutPoint& point = patch.cut_points[-1 - patch.points[k]];
     if (point.kind == CutPoint::Kind::Rim) {
       row = point.of[1] >= 0 ? at_node(point.of[1]) : at_centre(-1 - point.of[1]);
     } else if (point.kind == CutPoint::Kind::Centre &&
-               static_cast<int>(k) >= piece.cells.free_points) {
+               static_cast<int>(k) >= patch.cells.free_points) {
       row = at_centre(point.face);
     }
   }
-  for (int k = 0; k < piece.free_nodes; ++k) {
-    state.velocity.row(k) = state_.velocities.row(level_set.nodes[piece.points[k]]);
+  for (int k = 0; k < patch.free_nodes; ++k) {
+    state.velocity.row(k) = state_.velocities.row(level_set.nodes[patch.points[k]]);
   }
   return state;
 }
 
 // Makes the solution the state, all of it or nothing.
-Result<void> SurfaceBody::take() {
+Result<void> TriangleBody::take() {
   const std::vector<int>& nodes = plan_.surface->level_set.nodes;
   next_plastic_ = state_.plastic;
   std::size_t place = 0;
-  for (const SurfacePiece& piece : plan_.surface->pieces) {
-    if (!piece.moves()) continue;
-    const PieceSolve& one = solves_[place++];
+  for (const TrianglePatch& patch : plan_.surface->patches) {
+    if (!patch.moves()) continue;
+    const PatchSolve& one = solves_[place++];
     const TriangleState& state = one.state;
     for (Eigen::Index n = 0; n < state.plastic.rows(); ++n)
       next_plastic_.row(one.plate->triangles()[static_cast<std::size_t>(n)]) = state.plastic.row(n);
-    for (int k = 0; k < piece.free_nodes; ++k) {
-      const int node = nodes[piece.points[k]];
+    for (int k = 0; k < patch.free_nodes; ++k) {
+      const int node = nodes[patch.points[k]];
       next_positions_.row(node) = rest_.row(node) + state.displacement.row(k);
       next_velocities_.row(node) = state.velocity.row(k);
       if (!next_positions_.row(node).allFinite() || !next_velocities_.row(node).allFinite()) {
@@ -441,12 +441,12 @@ Result<void> SurfaceBody::take() {
 }
 
 // Requires: the next positions are complete, but not yet in the state.
-void SurfaceBody::mark_unsettled() {
+void TriangleBody::mark_unsettled() {
   std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  // Those of a piece that nothing holds too: they stay away from rest, and come back once it moves.
-  for (const SurfacePiece& piece : plan_.surface->pieces) {
-    for (int k = 0; k < piece.free_nodes; ++k) {
-      const int node = plan_.surface->level_set.nodes[piece.points[k]];
+  // Those of a patch that nothing holds too: they stay away from rest, and come back once it moves.
+  for (const TrianglePatch& patch : plan_.surface->patches) {
+    for (int k = 0; k < patch.free_nodes; ++k) {
+      const int node = plan_.surface->level_set.nodes[patch.points[k]];
       const auto position = next_positions_.row(node);
       const double larger = std::max(length_of(position - rest_.row(node)),
                                      length_of(position - state_.positions.row(node)));

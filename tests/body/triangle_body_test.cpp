@@ -1,4 +1,4 @@
-#include "pliant/body/surface_body.hpp"
+#include "pliant/body/triangle_body.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,10 +42,10 @@ BodyInputs moving_inputs(std::vector<SampledForce> forces) {
 
 constexpr BodySettings at_rest_measured = {.measure = Measure::Rest};
 
-SurfaceBody body_of(const Mesh& mesh, const MeshReading& reading = {},
-                    const BodySettings& settings = at_rest_measured) {
-  return SurfaceBody(std::make_shared<TriangleSurface>(make_surface(mesh, reading).value()),
-                     settings);
+TriangleBody body_of(const Mesh& mesh, const MeshReading& reading = {},
+                     const BodySettings& settings = at_rest_measured) {
+  return TriangleBody(std::make_shared<TriangleSurface>(make_surface(mesh, reading).value()),
+                      settings);
 }
 
 constexpr std::array<double, 2> one = {1, 1};
@@ -58,7 +58,7 @@ double height_at_middle(const Body& body) {
 
 // The peak of a settled body under a load everywhere.
 double settled_peak(const Mesh& mesh, double radius) {
-  SurfaceBody body = body_of(mesh, {.unit = one});
+  TriangleBody body = body_of(mesh, {.unit = one});
   REQUIRE(body.step(static_inputs({load_on({0, 0, 0}, radius, 50)})));
   return peak_of(body);
 }
@@ -99,7 +99,7 @@ TEST_CASE("a poked sphere dents as the equation of its meridian says", "[body][s
     for (const int levels : {3, 4}) {
       if (is_sanitized && levels > 3) continue;
       const Mesh mesh = sphere(levels);
-      SurfaceBody body = body_of(mesh, {.unit = one});
+      TriangleBody body = body_of(mesh, {.unit = one});
       const Vector3d pole = mesh.positions.row(0).transpose();
       REQUIRE(
           body.step(static_inputs({{PointForce{pole, pole}, 1, radius, 0.3, Falloff::Constant}})));
@@ -115,7 +115,7 @@ TEST_CASE("slopes all round a disc make a round bump", "[body][surface]") {
   if (is_sanitized) return;
   constexpr double radius = 0.4, slope = 0.3;
   for (const double unit : {1.0, 2.0}) {
-    SurfaceBody body = body_of(square(60, 1, 0.3), {.unit = std::array{unit, unit}});
+    TriangleBody body = body_of(square(60, 1, 0.3), {.unit = std::array{unit, unit}});
     BodyInputs in = static_inputs({load_on({0, 0, 0}, radius, 0)});
     in.tangents = {{0, -slope, 0}, {0, slope, 0}, {0, -slope, 0}, {0, slope, 0}};
     REQUIRE(body.step(in));
@@ -131,7 +131,7 @@ TEST_CASE("the unit carries a grid's numbers over to its remesh", "[body][surfac
   Mesh mesh = square(64, 1, 0.25);
   mesh.positions.col(0) *= 2;
   mesh.positions.col(2) *= 3;
-  SurfaceBody remesh =
+  TriangleBody remesh =
       body_of(mesh, {.unit = std::array{2.0, 3.0}, .axis = std::array{1.0, 0.0, 0.0}});
   BodyInputs in = static_inputs({load_on({0, 0, 0}, 9, 9)});
   in.stiffness = {1.5, 0.7, 0.4};
@@ -145,10 +145,10 @@ TEST_CASE("b and d change places with an axis turned by 90 degrees", "[body][sur
   BodyInputs in = static_inputs({load_on({0.1, 0, 0}, 0.35, 0.2)});
   in.stiffness = {2, 1, 0.5};
   in.tangents = {{0, 0.1, 0}, {0, 0.2, 0}, {0, -0.3, 0}, {0, 0.4, 0}};
-  SurfaceBody along_x = body_of(mesh, {.axis = std::array{1.0, 0.0, 0.0}});
+  TriangleBody along_x = body_of(mesh, {.axis = std::array{1.0, 0.0, 0.0}});
   REQUIRE(along_x.step(in));
   // v = n x u: with u along z and n up, v runs along x.
-  SurfaceBody along_z = body_of(mesh, {.axis = std::array{0.0, 0.0, 1.0}});
+  TriangleBody along_z = body_of(mesh, {.axis = std::array{0.0, 0.0, 1.0}});
   std::swap(in.stiffness.b, in.stiffness.d);
   std::swap(in.tangents.sv0, in.tangents.su0);
   std::swap(in.tangents.sv1, in.tangents.su1);
@@ -163,7 +163,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
   const Mesh mesh = sphere(3);
   const Vector3d pole = mesh.positions.row(0).transpose();
   const SampledForce force{PointForce{pole, {0.3, 1, 0.2}}, 1, 0.9, 0.4, Falloff::Linear};
-  SurfaceBody body = body_of(mesh);
+  TriangleBody body = body_of(mesh);
   for (int frame = 0; frame < 5; ++frame) REQUIRE(body.step(moving_inputs({force})));
   const Field expected = way_of(body);
   const double peak = peak_of(body);
@@ -183,7 +183,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
     for (std::size_t k = 0; k < order.size(); ++k) {
       positions[order[k]] = mesh.positions.row(static_cast<Eigen::Index>(k)).transpose();
     }
-    SurfaceBody other = body_of(mesh_of(positions, faces));
+    TriangleBody other = body_of(mesh_of(positions, faces));
     for (int frame = 0; frame < 5; ++frame) REQUIRE(other.step(moving_inputs({force})));
     for (std::size_t k = 0; k < order.size(); ++k) {
       CHECK((way_of(other).row(order[k]) - expected.row(static_cast<Eigen::Index>(k))).norm() <
@@ -200,7 +200,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
         positions.push_back(mesh.positions.row(mesh.corner_vertices[k + n]).transpose());
       }
     }
-    SurfaceBody other = body_of(mesh_of(positions, faces));
+    TriangleBody other = body_of(mesh_of(positions, faces));
     for (int frame = 0; frame < 5; ++frame) REQUIRE(other.step(moving_inputs({force})));
     REQUIRE(other.rest().rows() == mesh.vertex_count());
     for (std::size_t k = 0; k < positions.size(); ++k) {
@@ -214,7 +214,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
     moved.positions = to_world(motion, mesh.positions);
     SampledForce its = force;
     its.kind = PointForce{to_world(motion, pole), motion.linear * Vector3d(0.3, 1, 0.2)};
-    SurfaceBody other = body_of(moved);
+    TriangleBody other = body_of(moved);
     for (int frame = 0; frame < 5; ++frame) REQUIRE(other.step(moving_inputs({its})));
     const Field back = way_of(other) * motion.linear;
     CHECK((back - expected).rowwise().norm().maxCoeff() < 1e-8 * peak);
@@ -224,7 +224,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
     in.transform = make_transform({3, -2, 5}, {30, 50, -20}, {1, 1, 1}, RotateOrder::Xyz);
     in.forces[0].kind =
         PointForce{to_world(in.transform, pole), in.transform.linear * Vector3d(0.3, 1, 0.2)};
-    SurfaceBody other = body_of(mesh);
+    TriangleBody other = body_of(mesh);
     for (int frame = 0; frame < 5; ++frame) REQUIRE(other.step(in));
     CHECK((way_of(other) - expected).rowwise().norm().maxCoeff() < 1e-8 * peak);
   }
@@ -233,7 +233,7 @@ TEST_CASE("no order of vertices, seam or rigid motion changes the answer", "[bod
 TEST_CASE("two loads together move as much as one after the other", "[body][surface]") {
   const Mesh mesh = square(16, 1, 0.3, true);
   const auto response = [&](double left, double right) {
-    SurfaceBody body = body_of(mesh);
+    TriangleBody body = body_of(mesh);
     for (int frame = 0; frame < 4; ++frame) {
       REQUIRE(body.step(moving_inputs(
           {load_on({-0.1, 0, 0}, 0.3, 0.2, left), load_on({0.1, 0, 0.1}, 0.3, 0.2, right)})));
@@ -245,7 +245,7 @@ TEST_CASE("two loads together move as much as one after the other", "[body][surf
 }
 
 TEST_CASE("what is outside the region does not move, to the bit", "[body][surface]") {
-  SurfaceBody body = body_of(square(20, 1, 0.3));
+  TriangleBody body = body_of(square(20, 1, 0.3));
   for (int frame = 0; frame < 5; ++frame) {
     REQUIRE(body.step(moving_inputs({load_on({0.1, 0, 0.05}, 0.25, 0.2)})));
   }
@@ -261,7 +261,7 @@ TEST_CASE("what is outside the region does not move, to the bit", "[body][surfac
 }
 
 TEST_CASE("a piece that nothing holds does not move", "[body][surface]") {
-  SurfaceBody body = body_of(sphere(2));
+  TriangleBody body = body_of(sphere(2));
   REQUIRE(body.step(moving_inputs({load_on({0, 0, 0}, 5, 5)})));
   CHECK_FALSE(body.last_step().solves());
   CHECK(peak_of(body) == 0);
@@ -269,7 +269,7 @@ TEST_CASE("a piece that nothing holds does not move", "[body][surface]") {
 
 TEST_CASE("a force between the nodes of a coarse mesh is told from one that is far away",
           "[body][surface]") {
-  const SurfaceBody body = body_of(square(4, 1, 0));
+  const TriangleBody body = body_of(square(4, 1, 0));
   const auto is_near = [&](const Vector3d& center) {
     const StepPlan plan = body.look(moving_inputs({load_on(center, 0.01, 0.01)})).value();
     CHECK_FALSE(plan.selects());
@@ -288,18 +288,18 @@ TEST_CASE("a pinned square has the deflection and the vibration of the literatur
   if (is_sanitized) return;
   // Timoshenko & Woinowsky-Krieger: 0.00406 q; clamped it is 0.00126 q.
   const Mesh mesh = square(40, 1, 0.2, true);
-  SurfaceBody body =
+  TriangleBody body =
       body_of(mesh, {.unit = one}, {.measure = Measure::Rest, .border = Border::Pinned});
   REQUIRE(body.step(static_inputs({load_on({0, 0, 0}, 9, 9)})));
   CHECK(peak_of(body) == Approx(0.00406235).epsilon(0.01));
-  const auto first = [&](const SurfaceBody& of) {
-    const SurfacePiece& piece = of.last_step().surface->pieces.at(0);
-    TrianglePlate plate(piece.cells, piece.masses, available_solvers().front(), {});
+  const auto first = [&](const TriangleBody& of) {
+    const TrianglePatch& patch = of.last_step().surface->patches.at(0);
+    TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), {});
     const Bending bending = bending_of(static_inputs({}), of.surface().unit, of.settings().border);
     return std::sqrt(smallest_eigenvalue(vibrating(plate, bending).value()).value());
   };
   CHECK(first(body) == Approx(19.739).epsilon(0.005));
-  SurfaceBody clamped = body_of(mesh, {.unit = one});
+  TriangleBody clamped = body_of(mesh, {.unit = one});
   REQUIRE(clamped.step(static_inputs({load_on({0, 0, 0}, 9, 9)})));
   CHECK(first(clamped) == Approx(35.985).epsilon(0.005));
 }
@@ -308,7 +308,7 @@ TEST_CASE("a free border bends by Poisson's ratio", "[body][surface]") {
   // Half a disc, whose diameter is the border.
   const Mesh mesh = square(24, 1, 0, true);
   const auto peak_with = [&](double poisson) {
-    SurfaceBody body =
+    TriangleBody body =
         body_of(mesh, {.unit = one}, {.measure = Measure::Rest, .border = Border::Free});
     BodyInputs in = static_inputs({load_on({0.5, 0, 0}, 0.45, 9)});
     in.poisson = poisson;
@@ -321,7 +321,7 @@ TEST_CASE("a free border bends by Poisson's ratio", "[body][surface]") {
 }
 
 TEST_CASE("the factor stays while the region does", "[body][surface]") {
-  SurfaceBody body = body_of(square(16, 1, 0.3));
+  TriangleBody body = body_of(square(16, 1, 0.3));
   const auto poke = [](double x, double magnitude) {
     return moving_inputs({load_on({x, 0, 0}, 0.3, 0.2, magnitude)});
   };
@@ -331,7 +331,7 @@ TEST_CASE("the factor stays while the region does", "[body][surface]") {
   REQUIRE(body.step(poke(0.01, 3)));
   CHECK(body.solver_counts().factorizations == 2);
   // A state restored in between gives the same bits with a new factor.
-  SurfaceBody other = body_of(square(16, 1, 0.3));
+  TriangleBody other = body_of(square(16, 1, 0.3));
   other.restore(body.state());
   REQUIRE(body.step(poke(0.01, 5)));
   REQUIRE(other.step(poke(0.01, 5)));
@@ -349,14 +349,14 @@ TEST_CASE("a badly conditioned plate takes the same steps together and one by on
   in.dynamics = {1e-9, 1e-9};
   in.frame_length = 0.4;
   in.dt = 0.4 / 12;
-  SurfaceBody together = body_of(mesh, reading);
+  TriangleBody together = body_of(mesh, reading);
   REQUIRE(together.step(in));
   REQUIRE(together.last_step().steps.count == 12);
   in.frame_length /= 12;
   // In the reverse order of vertices, so that everything is rounded differently.
   mesh.positions = mesh.positions.colwise().reverse().eval();
   for (int& vertex : mesh.corner_vertices) vertex = mesh.vertex_count() - 1 - vertex;
-  SurfaceBody one_by_one = body_of(mesh, reading);
+  TriangleBody one_by_one = body_of(mesh, reading);
   for (int k = 0; k < 12; ++k) REQUIRE(one_by_one.step(in));
   const double peak = peak_of(together);
   REQUIRE(peak > 0);
@@ -366,7 +366,7 @@ TEST_CASE("a badly conditioned plate takes the same steps together and one by on
 }
 
 TEST_CASE("a released surface comes back to rest, all of it", "[body][surface]") {
-  SurfaceBody body =
+  TriangleBody body =
       body_of(square(16, 1, 0.3), {}, {.measure = Measure::Rest, .release = Release::Recover});
   BodyInputs in = moving_inputs({load_on({-0.15, 0, 0}, 0.25, 0.2, 50)});
   in.dynamics = {1, 40};
@@ -398,7 +398,7 @@ TEST_CASE("a piece that nothing held for a while still comes back to rest", "[bo
   mesh.face_sizes.insert(mesh.face_sizes.end(), ball.face_sizes.begin(), ball.face_sizes.end());
   for (const int vertex : ball.corner_vertices) mesh.corner_vertices.push_back(first + vertex);
   mesh.corner_uvs.assign(mesh.corner_vertices.size(), -1);
-  SurfaceBody body = body_of(mesh, {}, {.measure = Measure::Rest, .release = Release::Recover});
+  TriangleBody body = body_of(mesh, {}, {.measure = Measure::Rest, .release = Release::Recover});
   const auto ball_peak = [&] { return way_of(body).bottomRows(ball.positions.rows()).norm(); };
 
   BodyInputs in = moving_inputs({load_on({0, 2.5, 0}, 0.8, 0.5, 5000), load_on({0, 0, 0}, 1, 0.5)});
@@ -419,7 +419,7 @@ TEST_CASE("a piece that nothing held for a while still comes back to rest", "[bo
 }
 
 TEST_CASE("a frozen node stays where the region left it, and holds its rim", "[body][surface]") {
-  SurfaceBody body = body_of(square(16, 1, 0.3));
+  TriangleBody body = body_of(square(16, 1, 0.3));
   BodyInputs in = moving_inputs({load_on({-0.1, 0, 0}, 0.3, 0.2, 50)});
   for (int frame = 0; frame < 5; ++frame) REQUIRE(body.step(in));
   const Field before = way_of(body);

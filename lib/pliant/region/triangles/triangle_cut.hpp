@@ -11,7 +11,7 @@
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/region/selection.hpp"
-#include "pliant/region/surface/level_set.hpp"
+#include "pliant/region/triangles/level_set.hpp"
 
 namespace pliant {
 
@@ -28,14 +28,14 @@ struct CutPoint {
 
   /// Of a point on the rim: the ends of its edge, the first of them inside. An end is an index
   /// into the level set's nodes, or -1 - k for the centre of faces[k]. Of the mean of a part: its
-  /// four corners, as points of the piece.
+  /// four corners, as points of the patch.
   std::array<int, 4> of = {};
   double t = 0;  ///< on the rim: its share of the way from the first end to the second
 };
 
 /// A connected part of a region: its cells, and what its points are. Free nodes come first, then
 /// all other free points, then what is held.
-struct SurfacePiece {
+struct TrianglePatch {
   TriangleCells cells;
 
   /// #points: the index of a node in the level set's `nodes`, or -1 - k for `cut_points[k]`.
@@ -57,22 +57,23 @@ struct SurfacePiece {
   CutCounts counts_of(const std::vector<bool>& within) const;
 };
 
-/// Hands what lies on the points of a piece (#points) to its free nodes (#free_nodes): the mean of
+/// Hands what lies on the points of a patch (#points) to its free nodes (#free_nodes): the mean of
 /// a part hands its share on in equal parts to its corners, then a centre to the corners of its
 /// face; what then lies on anything but a free node is dropped.
-std::vector<double> shared_out(const SurfacePiece& piece, const LevelSet& level_set,
+std::vector<double> shared_out(const TrianglePatch& patch, const LevelSet& level_set,
                                std::vector<double> at_points);
 
-/// A function that is linear on each triangle, on the points of a piece (#points): from its values
+/// A function that is linear on each triangle, on the points of a patch (#points): from its values
 /// on the nodes and at the centres of the level set.
-std::vector<double> values_at_points(const SurfacePiece& piece, std::span<const double> at_nodes,
+std::vector<double> values_at_points(const TrianglePatch& patch, std::span<const double> at_nodes,
                                      std::span<const double> at_centres);
 
 /// Cuts the region phi >= 0 out of the triangles. `is_border` (#nodes of the surface) marks the
-/// nodes of edges with one face. The pieces are in the order of their first cells. Requires:
+/// nodes of edges with one face. The patches are in the order of their first cells. Requires:
 /// `level_set` is snapped. Errors: Interrupted. Cost: proportional to the region.
-Result<std::vector<SurfacePiece>> cut_out(const TriangleSurface& surface, const LevelSet& level_set,
-                                          const std::vector<bool>& is_border, Border border,
-                                          const StopRequest& should_stop = {});
+Result<std::vector<TrianglePatch>> cut_out(const TriangleSurface& surface,
+                                           const LevelSet& level_set,
+                                           const std::vector<bool>& is_border, Border border,
+                                           const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "pliant/region/surface/surface_load.hpp"
+#include "pliant/region/triangles/triangle_load.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,8 +33,8 @@ std::array<double, 3> hats_where_positive(const std::array<double, 3>& at) {
 
 }  // namespace
 
-bool SurfaceLoads::compute(const SampledForce& force) {
-  loads_.resize(pieces_.size());
+bool TriangleLoads::compute(const SampledForce& force) {
+  loads_.resize(patches_.size());
   bool reaches = false;
   if (force.force_radius > 0) {
     at_nodes_ = depths_of(measured_, level_set_.nodes, force.kind, force.force_radius,
@@ -43,14 +43,14 @@ bool SurfaceLoads::compute(const SampledForce& force) {
   }
   if (reaches) at_centres_ = means_at_centres(level_set_, at_nodes_, std::move(at_centres_));
   bool acts = false;
-  for (std::size_t k = 0; k < pieces_.size(); ++k) {
-    const SurfacePiece& piece = pieces_[k];
-    loads_[k] = Field::Zero(piece.free_nodes, 3);
+  for (std::size_t k = 0; k < patches_.size(); ++k) {
+    const TrianglePatch& patch = patches_[k];
+    loads_[k] = Field::Zero(patch.free_nodes, 3);
     if (!reaches) continue;
-    const std::vector<double> areas = areas_on(piece);
-    for (int n = 0; n < piece.free_nodes; ++n) {
+    const std::vector<double> areas = areas_on(patch);
+    for (int n = 0; n < patch.free_nodes; ++n) {
       if (areas[n] == 0) continue;
-      const int node = level_set_.nodes[piece.points[n]];
+      const int node = level_set_.nodes[patch.points[n]];
       loads_[k].row(n) = (areas[n] * measured_.load_on(node, force)).transpose();
       acts = true;
     }
@@ -59,19 +59,19 @@ bool SurfaceLoads::compute(const SampledForce& force) {
 }
 
 // The area on which the force acts, shared out to the free nodes.
-std::vector<double> SurfaceLoads::areas_on(const SurfacePiece& piece) const {
-  const std::vector<double> at = values_at_points(piece, at_nodes_, at_centres_);
-  std::vector<double> areas(piece.points.size(), 0);
-  for (const TriangleCell& cell : piece.cells.cells) {
+std::vector<double> TriangleLoads::areas_on(const TrianglePatch& patch) const {
+  const std::vector<double> at = values_at_points(patch, at_nodes_, at_centres_);
+  std::vector<double> areas(patch.points.size(), 0);
+  for (const TriangleCell& cell : patch.cells.cells) {
     const auto& [a, b, c] = cell.points;
     const std::array<double, 3> hats = hats_where_positive({at[a], at[b], at[c]});
     const double area = std::abs(cell.shape.signed_area());
     for (int k = 0; k < 3; ++k) areas[cell.points[k]] += area * hats[k];
   }
-  return shared_out(piece, level_set_, std::move(areas));
+  return shared_out(patch, level_set_, std::move(areas));
 }
 
-Push SurfaceLoads::push() const {
+Push TriangleLoads::push() const {
   Push push;
   for (const Field& loads : loads_) {
     for (Eigen::Index n = 0; n < loads.rows(); ++n) {

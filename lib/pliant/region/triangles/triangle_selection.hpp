@@ -4,13 +4,13 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/region/selection.hpp"
-#include "pliant/region/surface/level_set.hpp"
-#include "pliant/region/surface/surface_cut.hpp"
+#include "pliant/region/triangles/level_set.hpp"
+#include "pliant/region/triangles/triangle_cut.hpp"
 
 namespace pliant {
 
 /// One force in the selection of a frame on a surface.
-struct SurfaceForceSelection {
+struct TriangleForceSelection {
   bool selects = false;       ///< whether it has a region of its own
   bool is_near = false;       ///< whether its sphere reaches a face, with or without a node in it
   CutCounts counts;           ///< nodes nearer than its deformation radius, cells at them
@@ -21,11 +21,11 @@ struct SurfaceForceSelection {
 };
 
 /// The region of a frame on a surface.
-struct SurfaceSelection {
+struct TriangleSelection {
   LevelSet level_set;  ///< snapped, and extended to nodes that recover
-  std::vector<SurfacePiece> pieces;
-  std::vector<Field> loads;  ///< of each piece (#free_nodes x 3, world): see `SurfaceLoads`
-  std::vector<SurfaceForceSelection> forces;  ///< in the order of the forces
+  std::vector<TrianglePatch> patches;
+  std::vector<Field> loads;  ///< of each patch (#free_nodes x 3, world): see `TriangleLoads`
+  std::vector<TriangleForceSelection> forces;  ///< in the order of the forces
 };
 
 }  // namespace pliant
