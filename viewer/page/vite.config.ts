@@ -8,6 +8,19 @@ import { defineConfig, type Plugin } from "vite";
 
 const allow = (text: string) => `'sha256-${createHash("sha256").update(text, "utf8").digest("base64")}'`;
 
+// Observable Plot puts this style into each drawing of the class.
+const drawn = `:where(.takes) {
+  --plot-background: white;
+  display: block;
+  height: auto;
+  height: intrinsic;
+  max-width: 100%;
+}
+:where(.takes text),
+:where(.takes tspan) {
+  white-space: pre;
+}`;
+
 // The policy is in the page itself; the command also reads it there for its server's answers.
 function policy(scripts: string[], styles: string[]): string {
   const rules = [
@@ -62,6 +75,7 @@ function inlined(): Plugin {
         delete bundle[name];
       }
       // The policy must come before all content that it covers.
+      if (scripts.some((script) => script.includes("--plot-background"))) styles.push(drawn);
       page.source = html.replace(/<meta charset="utf-8">/, (charset) => `${charset}\n${policy(scripts, styles)}`);
     },
   };

@@ -1,11 +1,13 @@
 // A measure over two axes: a cell for each pair of their values.
 
+import * as Plot from "@observablehq/plot";
+
 import { numberText } from "../curve_plot";
 import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
-import { drawAxes, Plot, type Area, type Mark } from "./plot";
+import { axisLook, TakePlot, type Area, type Mark } from "./plot";
 import type { Pointing } from "./pointing";
-import { measureRange, type Axis, type Range, type ScaleChoice } from "./scales";
+import { measureRange, textAxis, type Range, type ScaleChoice } from "./scales";
 import type { Measure } from "./sweep";
 
 export interface MapSpec {
@@ -23,20 +25,14 @@ export interface MapSpec {
   text: (row: number) => string;
 }
 
-const cells = (texts: string[]): Axis => ({
-  at: (k) => (k + 0.5) / texts.length,
-  ticks: (most) => {
-    const every = Math.ceil(texts.length / Math.max(most, 1));
-    return texts.map((text, k) => ({ at: (k + 0.5) / texts.length, text })).filter((_, k) => k % every === 0);
-  },
-});
+const cells = { type: "band", padding: 0, round: true } as const;
 
-export class HeatMap extends Plot {
-  private area: Area = { left: 0, top: 0, width: 0, height: 0 };
+export class HeatMap extends TakePlot {
   /** Of each cell: the mean of its takes, and these. */
   private readonly means: Float64Array;
   private readonly rows: number[][];
   private readonly range: Range | null;
+  private cell: (index: number) => Area = () => ({ left: 0, top: 0, width: 0, height: 0 });
 
   constructor(
     private readonly spec: MapSpec,
@@ -58,32 +54,45 @@ export class HeatMap extends Plot {
     });
     this.means = sums.map((sum, cell) => sum / counts[cell]);
     this.range = measureRange(this.means, spec.scale, spec.measure.isWhole);
-    const ends = this.range ? `, from ${numberText(this.range.low)} to ${numberText(this.range.high)}` : "";
-    this.label = `${spec.measure.name} [${spec.measure.unit}]: ${spec.about}${ends}`;
+    if (!this.range) return;
+    const { low, high, isLog } = this.range;
+    const ends = [numberText(low), numberText(high)];
+    this.label = `${spec.measure.name} [${spec.measure.unit}]: ${spec.about}, from ${ends.join(" to ")}`;
+    const colours = document.createElement("p");
+    const ramp = document.createElement("i");
+    ramp.style.background = velocityRamp.css();
+    colours.append(ends[0], ramp, ends[1], isLog ? " (log)" : "");
+    this.place.before(colours);
   }
 
-  protected draw(context: CanvasRenderingContext2D, width: number, height: number, palette: Palette): void {
+  protected options(): Plot.PlotOptions {
     const { across, up, xName, yName } = this.spec;
-    context.clearRect(0, 0, width, height);
-    this.area = drawAxes(context, width, height, cells(across), cells(up), palette, { xName, yName, top: 24, hasGrid: false });
-    this.drawScale(context, palette);
+    const [x, y] = [textAxis(across, 4), textAxis(up, 4)];
+    return {
+      inset: 0,
+      marginLeft: 68,
+      x: { ...x.scale, ...cells },
+      y: { ...y.scale, ...cells, reverse: true },
+      marks: [Plot.axisX({ ...axisLook, ...x.ticks, label: xName }), Plot.axisY({ ...axisLook, ...y.ticks, label: yName, lineWidth: 4 }), Plot.frame({ strokeOpacity: 0.25 })],
+    };
+  }
+
+  protected draw(context: CanvasRenderingContext2D, axes: Plot.Plot, palette: Palette): void {
+    const [x, y] = [axes.scale("x")!, axes.scale("y")!];
+    const { length } = this.spec.across;
+    this.cell = (index) => ({ left: x.apply(index % length), top: y.apply(Math.floor(index / length)), width: x.bandwidth!, height: y.bandwidth! });
+    context.strokeStyle = palette.faint;
     this.means.forEach((mean, cell) => {
-      const { left, top, width: w, height: h } = this.cell(cell);
+      const { left, top, width, height } = this.cell(cell);
       if (Number.isNaN(mean)) {
         // No take of this cell is done.
-        context.strokeStyle = palette.faint;
-        context.globalAlpha = 0.5;
-        context.beginPath();
-        context.moveTo(left + 2, top + h - 2);
-        context.lineTo(left + w - 2, top + 2);
-        context.stroke();
-        context.globalAlpha = 1;
+        context.stroke(new Path2D(`M${left + 2} ${top + height - 2}L${left + width - 2} ${top + 2}`));
         return;
       }
       context.fillStyle = velocityRamp.cssAt(this.shareOf(mean));
       // Without gaps that would shimmer, and with none wider than a pixel.
-      const gap = w > 6 && h > 6 ? 1 : 0;
-      context.fillRect(left, top, w - gap, h - gap);
+      const gap = width > 6 && height > 6 ? 1 : 0;
+      context.fillRect(left, top, width - gap, height - gap);
     });
   }
 
@@ -92,26 +101,6 @@ export class HeatMap extends Plot {
     const { low, high, isLog } = this.range!;
     if (!(high > low)) return 0;
     return isLog ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low);
-  }
-
-  // The colours' scale, above the cells.
-  private drawScale(context: CanvasRenderingContext2D, palette: Palette): void {
-    if (!this.range) return;
-    const { low, high, isLog } = this.range;
-    const { left, width } = this.area;
-    const [first, last] = [numberText(low), `${numberText(high)}${isLog ? " (log)" : ""}`];
-    context.fillStyle = palette.ink;
-    context.textBaseline = "middle";
-    context.textAlign = "left";
-    context.fillText(first, left, 10);
-    context.textAlign = "right";
-    context.fillText(last, left + width, 10);
-    const from = left + context.measureText(first).width + 6;
-    const to = left + width - context.measureText(last).width - 6;
-    for (let x = Math.round(from); x < to; ++x) {
-      context.fillStyle = velocityRamp.cssAt((x - from) / (to - from));
-      context.fillRect(x, 6, Math.min(2, to - x), 8); // no seams, since a pixel here is not quite one of the screen
-    }
   }
 
   protected marksOf({ left, top, width, height }: Area, palette: Palette): Mark[] {
@@ -126,28 +115,17 @@ export class HeatMap extends Plot {
   /** The first take of the cell there. */
   protected rowAt(x: number, y: number): number | null {
     const { across, up } = this.spec;
-    const column = Math.floor(((x - this.area.left) / this.area.width) * across.length);
-    const line = Math.floor((1 - (y - this.area.top) / this.area.height) * up.length);
+    const { left, top, width, height } = this.cell(0);
+    const [column, line] = [Math.floor((x - left) / width), Math.floor((top + height - y) / height)];
     if (column < 0 || column >= across.length || line < 0 || line >= up.length) return null;
     return this.rows[line * across.length + column][0] ?? null;
   }
 
-  protected textAt(row: number | null): string {
-    if (row === null) return "";
+  protected textAt(row: number): string {
     const { x, y } = this.spec.cellOf(row);
     const cell = y * this.spec.across.length + x;
     if (this.rows[cell].length === 1) return this.spec.text(row);
     const mean = this.means[cell];
     return Number.isNaN(mean) ? "" : `${numberText(mean)}, mean of ${this.rows[cell].length}`;
-  }
-
-  private cell(index: number): Area {
-    const { across, up } = this.spec;
-    const [x, y] = [index % across.length, Math.floor(index / across.length)];
-    const left = this.area.left + Math.round((x / across.length) * this.area.width);
-    const right = this.area.left + Math.round(((x + 1) / across.length) * this.area.width);
-    const top = this.area.top + Math.round((1 - (y + 1) / up.length) * this.area.height);
-    const bottom = this.area.top + Math.round((1 - y / up.length) * this.area.height);
-    return { left, top, width: right - left, height: bottom - top };
   }
 }

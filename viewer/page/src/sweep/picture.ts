@@ -3,7 +3,6 @@
 
 import { drawLegend, type Legend } from "../legend";
 import type { Palette } from "../theme";
-import { cut } from "./plot";
 import type { Studio } from "./studio";
 import type { Sweep } from "./sweep";
 
@@ -60,4 +59,14 @@ export function drawSheet(sweep: Sweep, studio: Studio, legend: Legend, summary:
   context.textAlign = "right";
   if (room > 12 * text) context.fillText(cut(context, summary, room), sheet.width - inset, bottom - 0.5 * text);
   return new Promise((resolve, reject) => sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("not enough memory for the picture"))), "image/png"));
+}
+
+/** The text, with some of its middle left out if there is no room: names often differ at the end. [px] */
+function cut(context: CanvasRenderingContext2D, text: string, room: number): string {
+  if (context.measureText(text).width <= room) return text;
+  const letters = [...text];
+  const shortened = (count: number) => `${letters.slice(0, Math.ceil(count / 2)).join("")}…${letters.slice(letters.length - Math.floor(count / 2)).join("")}`;
+  let count = letters.length - 1;
+  while (count > 1 && context.measureText(shortened(count)).width > room) --count;
+  return shortened(count);
 }

@@ -3,7 +3,7 @@
 import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
 import { HeatMap } from "./heat_map";
-import { Graph, type Joined, type Plot } from "./plot";
+import { Graph, type Joined, type TakePlot } from "./plot";
 import type { Pointing } from "./pointing";
 import { measureAxis, measureRange, pathAxis, placeOf, type ScaleChoice } from "./scales";
 import { measureText, shortText, type Path, type Sweep } from "./sweep";
@@ -35,7 +35,7 @@ export class PlotGrid {
   up = 1;
   /** Axes that a map can have: they vary one PATH. */
   readonly mapAxes: number[];
-  private plots: Plot[] = [];
+  private plots: TakePlot[] = [];
   /** Colour the legends. */
   private legends: ((palette: Palette) => void)[] = [];
   private readonly seen: IntersectionObserver;
@@ -72,7 +72,7 @@ export class PlotGrid {
     this.place.style.setProperty("--columns", String(this.sweep.paths.length));
     this.legends = [];
     const parts = isMap ? this.maps() : this.graphs();
-    this.plots = parts.filter((part): part is Plot => !(part instanceof HTMLElement));
+    this.plots = parts.filter((part): part is TakePlot => !(part instanceof HTMLElement));
     this.place.replaceChildren(...parts.map((part) => (part instanceof HTMLElement ? part : part.element)));
     for (const { element } of this.plots) this.seen.observe(element);
   }
@@ -82,7 +82,7 @@ export class PlotGrid {
     for (const dress of this.legends) dress(this.themes.palette);
   }
 
-  private graphs(): (Plot | HTMLElement)[] {
+  private graphs(): (TakePlot | HTMLElement)[] {
     const { sweep } = this;
     const columns = sweep.paths.map((path, k) => ({ path, ...this.joined(path, k) }));
     const heads = columns.map(({ path, colours }) => this.head(path, colours));
@@ -198,7 +198,7 @@ export class PlotGrid {
     return { lines, colours, colourOf };
   }
 
-  private maps(): Plot[] {
+  private maps(): TakePlot[] {
     const { sweep, across, up } = this;
     const { axes } = sweep.head;
     const stepsOf = (axis: number) => {

@@ -1,16 +1,25 @@
 // Axes of plots: linear, logarithmic, or a place for each text.
 
-import { scaleLinear, scaleLog } from "d3-scale";
+import type { AxisXOptions, ScaleOptions } from "@observablehq/plot";
 
-import { textsThat } from "./numbers";
+import { numberText } from "../curve_plot";
 import type { Measure, Path } from "./sweep";
 
 export type ScaleChoice = "auto" | "linear" | "log";
 
-/** A map from numbers to 0..1, with ticks. */
+/** An axis of Observable Plot. */
 export interface Axis {
-  at(value: number): number;
-  ticks(most: number): { at: number; text: string }[];
+  scale: ScaleOptions;
+  ticks: Pick<AxisXOptions, "ticks" | "tickFormat">;
+}
+
+/** A place for each text, named as far as there is room. */
+export function textAxis(texts: string[], most: number): Axis {
+  const every = Math.ceil(texts.length / most);
+  return {
+    scale: { type: "point", domain: [...texts.keys()], padding: 0.5 },
+    ticks: { ticks: [...texts.keys()].filter((k) => k % every === 0), tickFormat: (k: number) => texts[k] },
+  };
 }
 
 /** Whether a logarithm spreads the numbers more evenly: values at equal ratios, or over decades. */
@@ -29,60 +38,18 @@ function spreadsByLog(sorted: number[]): boolean {
 const hasOneSign = (sorted: ArrayLike<number>) => sorted[0] > 0 || sorted[sorted.length - 1] < 0;
 
 function numberAxis(low: number, high: number, isLog: boolean, isWhole: boolean): Axis {
-  if (low === high) {
-    const room = low === 0 ? 1 : Math.abs(low) / 2;
-    [low, high] = [low - room, high + room];
-    isLog = false;
-  }
-  // A margin, so that marks at the ends are whole.
-  const margin = 0.04;
-  const spread = isLog ? Math.exp(margin * (Math.log(Math.abs(high)) - Math.log(Math.abs(low)))) : 1;
-  const inside = (value: number) => Math.sign(low) * Math.min(Math.max(Math.abs(value), Number.MIN_VALUE), Number.MAX_VALUE);
-  const scale = isLog
-    ? scaleLog().domain([inside(low / spread), inside(high * spread)])
-    : scaleLinear().domain([low - margin * (high - low), high + margin * (high - low)]);
+  if (isLog && low < high) return { scale: { type: "log", domain: [low, high] }, ticks: { tickFormat: (value: number) => numberText(value) } };
+  const room = low < high ? 0 : (Math.abs(low) || 2) / 2;
   return {
-    at: (value) => (isLog && value === 0 ? NaN : scale(value)),
-    ticks: (most) => {
-      const ticksFor = (wanted: number) => scale.ticks(wanted).filter((value) => !isWhole || Number.isInteger(value));
-      let ticks = ticksFor(most);
-      // Round numbers stay round with fewer ticks: not every second of 0.5, 1, 1.5.
-      for (let wanted = most - 1; wanted > 0 && ticks.length > most && !isLog; --wanted) ticks = ticksFor(wanted);
-      for (const leading of isLog ? ["125", "1"] : []) {
-        if (ticks.length <= most) break;
-        const few = ticks.filter((value) => leading.includes(value.toExponential().replace("-", "")[0]));
-        if (few.length >= 2) ticks = few;
-      }
-      const every = Math.ceil(ticks.length / Math.max(most, 1));
-      const few = ticks.filter((_, k) => k % every === 0);
-      const texts = tickTexts(few);
-      return few.map((value, k) => ({ at: scale(value), text: texts[k] }));
-    },
-  };
-}
-
-/** With as many digits as say where the ticks are; a tick may be off by rounding. */
-function tickTexts(ticks: number[]): string[] {
-  const size = ticks.reduce((most, tick) => Math.max(most, Math.abs(tick)), 0);
-  const step = ticks.length > 1 ? Math.abs(ticks[1] - ticks[0]) : size;
-  return textsThat(ticks, (texts) => texts.every((text, k) => Math.abs(Number(text) - ticks[k]) <= Math.max(1e-3 * Math.min(step, Math.abs(ticks[k]) || step), 1e-12 * Math.abs(ticks[k]))));
-}
-
-function textAxis(texts: string[]): Axis {
-  const at = (k: number) => (k + 0.5) / texts.length;
-  return {
-    at,
-    ticks: (most) => {
-      const every = Math.ceil(texts.length / Math.max(most, 1));
-      return texts.map((text, k) => ({ at: at(k), text })).filter((_, k) => k % every === 0);
-    },
+    scale: { type: "linear", domain: [low - room, high + room], nice: true },
+    ticks: isWhole ? { tickFormat: (value: number) => (Number.isInteger(value) ? String(value) : "") } : {},
   };
 }
 
 /** The axis of a path's values; a row is at its number, or that of its text. */
 export function pathAxis(path: Path, choice: ScaleChoice): Axis {
   const { numbers, shortTexts } = path;
-  if (!numbers) return textAxis(shortTexts);
+  if (!numbers) return textAxis(shortTexts, 6);
   const sorted = [...new Set(numbers)].sort((a, b) => a - b);
   const isLog = choice === "log" ? hasOneSign(sorted) : choice === "auto" && spreadsByLog(sorted);
   return numberAxis(sorted[0], sorted[sorted.length - 1], isLog, false);
