@@ -1,11 +1,9 @@
 #include "cli/commands/curve_plot.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -22,308 +20,204 @@ namespace {
 
 // In pixels.
 constexpr double width = 960;
-constexpr double left_margin = 76;
-constexpr double right_margin = 24;
-constexpr double top_margin = 52;
-constexpr double header = 26;  // of a panel, for its name and legend
+constexpr double left = 76;
+constexpr double right = width - 24;
+constexpr double header = 78;  // of the picture, with the name of the first panel
 constexpr double panel_height = 190;
-constexpr double panel_gap = 34;
-constexpr double bottom_margin = 12;
-constexpr double samples_a_pixel = 2;
+constexpr double panel_step = 250;  // from one panel to the next
 
 constexpr std::string_view style = R"(<style>
-  text { font: 12px system-ui, sans-serif; fill: #5b6472; }
-  .title { font-size: 15px; font-weight: 600; fill: #1c2330; }
-  .name { font-size: 13px; font-weight: 600; fill: #1c2330; }
-  .back { fill: #ffffff; }
-  .panel { fill: #f7f8fa; stroke: #c9d0da; }
-  .grid { stroke: #e4e8ee; } .zero { stroke: #aab3c0; }
-  .curve { fill: none; stroke-width: 2; stroke-linejoin: round; }
-  .outside { stroke-dasharray: 5 4; opacity: 0.65; }
-  .c0 { stroke: #2563c9; } .c1 { stroke: #c2362f; } .c2 { stroke: #2a8a4a; } .c3 { stroke: #2563c9; }
-  .k0 { fill: #2563c9; } .k1 { fill: #c2362f; } .k2 { fill: #2a8a4a; } .k3 { fill: #2563c9; }
-  .key { stroke: #ffffff; } .handle { stroke: #8a94a3; } .tip { fill: #ffffff; stroke: #8a94a3; }
+  text { font: 12px system-ui, sans-serif; fill: #5b6472; } .name { font-weight: 600; fill: #1c2330; }
+  .back, .tip { fill: #ffffff; } .panel { fill: #f7f8fa; stroke: #c9d0da; } .end { stroke: #c9d0da; }
+  .curve { fill: none; stroke: currentColor; stroke-width: 2; stroke-linejoin: round; }
+  .outside { stroke-dasharray: 5 4; opacity: 0.65; } .handle, .tip { stroke: #8a94a3; }
+  .key { fill: currentColor; stroke: #ffffff; }
+  .c0 { color: #2563c9; } .c1 { color: #c2362f; } .c2 { color: #2a8a4a; }
   @media (prefers-color-scheme: dark) {
-    text { fill: #a3adba; } .title, .name { fill: #eef1f5; }
-    .back { fill: #14171c; } .panel { fill: #1b2027; stroke: #3a424e; }
-    .grid { stroke: #272e38; } .zero { stroke: #596474; }
-    .c0 { stroke: #77a8ff; } .c1 { stroke: #ff8078; } .c2 { stroke: #6fd48f; } .c3 { stroke: #77a8ff; }
-    .k0 { fill: #77a8ff; } .k1 { fill: #ff8078; } .k2 { fill: #6fd48f; } .k3 { fill: #77a8ff; }
-    .key { stroke: #14171c; } .handle { stroke: #7c8796; } .tip { fill: #14171c; stroke: #7c8796; }
+    text { fill: #a3adba; } .name { fill: #eef1f5; } .key { stroke: #14171c; }
+    .back, .tip { fill: #14171c; } .panel { fill: #1b2027; stroke: #3a424e; } .end { stroke: #3a424e; }
+    .c0 { color: #77a8ff; } .c1 { color: #ff8078; } .c2 { color: #6fd48f; }
   }
 </style>
 )";
 
-// A step of 1, 2 or 5 times a power of ten, so that about `count` steps fill `extent`.
-double nice_step(double extent, double count) {
-  const double rough = extent / count;
-  const double power = std::pow(10, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= rough) return factor * power;
-  }
-  return 10 * power;
-}
-
-std::string coordinate(double pixels) {
-  std::string text = fmt::format("{:.2f}", std::clamp(pixels, -1e6, 1e6));
-  while (text.ends_with('0')) text.pop_back();
-  if (text.ends_with('.')) text.pop_back();
-  return text;
-}
-
-struct Point {
-  double x = 0;
-  double y = 0;
-};
-
-// Maps frames and values to pixels.
-struct Panel {
-  double first = 0;
-  double last = 1;
-  double low = 0;
-  double high = 1;
-  double top = 0;  // of the plotted area [px]
-
-  double x(double frame) const {
-    return left_margin + (frame - first) / (last - first) * (width - left_margin - right_margin);
-  }
-  double y(double value) const { return top + (1 - (value - low) / (high - low)) * panel_height; }
-  Point at(double frame, double value) const { return {x(frame), y(value)}; }
-};
-
-// A line through points, leaving out those that it passes through anyway.
-class Path {
- public:
-  void move_to(Point point) {
-    draw();
-    text_ += fmt::format("M{} {}", coordinate(point.x), coordinate(point.y));
-    start_ = point;
-  }
-
-  void line_to(Point point) {
-    constexpr std::size_t most_passed = 50;  // each is checked again for every new point
-    const bool passes_all = passed_.size() < most_passed &&
-                            std::all_of(passed_.begin(), passed_.end(), [&](Point passed) {
-                              return is_passed(start_, passed, point);
-                            });
-    if (!passes_all) draw();
-    passed_.push_back(point);
-  }
-
-  std::string take() {
-    draw();
-    return std::move(text_);
-  }
-
- private:
-  // Whether the straight line from a to c passes b: within a twentieth of a pixel, and b is not
-  // beyond a or c.
-  static bool is_passed(Point a, Point b, Point c) {
-    const double length = std::hypot(c.x - a.x, c.y - a.y);
-    const double area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
-    return area <= 0.05 * length && (b.x - a.x) * (c.x - b.x) + (b.y - a.y) * (c.y - b.y) >= 0;
-  }
-
-  void draw() {
-    if (passed_.empty()) return;
-    start_ = passed_.back();
-    text_ += fmt::format("L{} {}", coordinate(start_.x), coordinate(start_.y));
-    passed_.clear();
-  }
-
-  std::string text_;
-  Point start_;
-  std::vector<Point> passed_;  // points since `start_`; the last one is the present end
-};
-
+constexpr std::string_view diamond = "m0 -5.5l5.5 5.5-5.5 5.5-5.5-5.5z";
 constexpr std::size_t parts_of_key = 1024;  // of the work for each, see StopPoll
 
 template <int D>
 class ChannelPlot {
  public:
-  ChannelPlot(const Channel<D>& channel, const std::string& path, bool is_switch, double first,
-              double last, double top, StopPoll& poll)
+  ChannelPlot(const Channel<D>& channel, bool is_switch, double first, double last, double top,
+              StopPoll& poll)
       : channel_(channel),
-        path_(path),
         is_switch_(is_switch),
-        panel_{first, last, 0, 1, top + header},
+        first_(first),
+        last_(last),
+        top_(top),
         poll_(poll) {
     if (channel.is_animated()) handles_ = channel.curve().handles();
     choose_range();
   }
 
-  std::string draw() {
-    text_ = fmt::format("<g>\n<text class=\"name\" x=\"{}\" y=\"{}\">{}</text>\n",
-                        coordinate(left_margin), coordinate(panel_.top - 9), path_);
+  std::string draw(const std::string& path) {
+    add("<text class=\"name\" x=\"{}\" y=\"{}\">{}</text>\n", left, top_ - 9, path);
     draw_legend();
-    text_ += fmt::format("<rect class=\"panel\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n",
-                         coordinate(left_margin), coordinate(panel_.top),
-                         coordinate(width - left_margin - right_margin), coordinate(panel_height));
-    draw_grid();
-    text_ += fmt::format(
-        "<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n",
-        coordinate(left_margin), coordinate(panel_.top),
-        coordinate(width - left_margin - right_margin), coordinate(panel_height));
+    add("<rect class=\"panel\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>\n", left, top_,
+        right - left, panel_height);
+    for (const double value : {low_, high_}) {
+      add("<path class=\"end\" d=\"M{} {:.2f}H{}\"/>", left, y(value), right);
+      add("<text x=\"{}\" y=\"{:.2f}\" dy=\"4\" text-anchor=\"end\">{}</text>\n", left - 8,
+          y(value), label(value));
+    }
+    add("<text x=\"{}\" y=\"{}\">{:g}</text>", left, top_ + panel_height + 16, first_ + 0.0);
+    add("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{:g}</text>\n", right,
+        top_ + panel_height + 16, last_ + 0.0);
+    add("<svg x=\"{0}\" y=\"{1}\" width=\"{2}\" height=\"{3}\" viewBox=\"{0} {1} {2} {3}\">\n",
+        left, top_, right - left, panel_height);
     for (int c = 0; c < D; ++c) draw_curve(c);
     for (int c = 0; c < D; ++c) draw_handles(c);
-    text_ += "</svg>\n";
+    add("</svg>\n");
     for (int c = 0; c < D; ++c) draw_keys(c);
-    text_ += "</g>\n";
     return std::move(text_);
   }
 
  private:
-  // The value range: the curve's exact extrema between its keys, with some margin. Handles and the
-  // curve outside its keys extend it by at most its height on each side, so that they do not
-  // flatten the curve.
+  template <class... Parts>
+  void add(fmt::format_string<const Parts&...> format, const Parts&... parts) {
+    fmt::format_to(std::back_inserter(text_), format, parts...);
+  }
+
+  double x(double frame) const {
+    return left + (frame - first_) / (last_ - first_) * (right - left);
+  }
+  double y(double value) const {
+    constexpr double air = 14;  // above the highest and below the lowest value
+    const double share = high_ > low_ ? (value - low_) / (high_ - low_) : 0.5;
+    const double place = top_ + panel_height - air - share * (panel_height - 2 * air);
+    return std::clamp(place, -1e6, 1e6);
+  }
+
+  // The curve's exact extrema between its keys. Handles and the curve outside its keys extend them
+  // by at most the curve's height on each side, so that they do not flatten it.
   void choose_range() {
     if (!channel_.is_animated()) {
-      const Value<D> value = channel_.at(panel_.first);
-      panel_.low = *std::min_element(value.begin(), value.end());
-      panel_.high = *std::max_element(value.begin(), value.end());
-    } else {
-      const auto& keys = channel_.curve().keys().keys;
-      const double from = std::clamp(keys.front().frame, panel_.first, panel_.last);
-      const double to = std::clamp(keys.back().frame, panel_.first, panel_.last);
-      std::tie(panel_.low, panel_.high) = extent(from, to);
-      const double room = panel_.high > panel_.low ? panel_.high - panel_.low
-                                                   : std::numeric_limits<double>::infinity();
-      const double lowest = panel_.low - room, highest = panel_.high + room;
-      const auto include = [&](double value) {
-        if (std::isnan(value)) return;
-        panel_.low = std::min(panel_.low, std::max(value, lowest));
-        panel_.high = std::max(panel_.high, std::min(value, highest));
-      };
-      const auto [low, high] = extent(panel_.first, panel_.last);
-      include(low);
-      include(high);
-      for (const KeyHandle<D>& handle : handles_) {
-        if (!is_seen(handle.frame)) continue;
-        for (const double value : handle.value) include(value);
+      const Value<D> value = channel_.at(first_);
+      low_ = *std::min_element(value.begin(), value.end());
+      high_ = *std::max_element(value.begin(), value.end());
+      return;
+    }
+    const auto extent = [&](double from, double to) {
+      const auto range = channel_.curve().range(from, to);
+      return std::pair(*std::min_element(range.low.begin(), range.low.end()),
+                       *std::max_element(range.high.begin(), range.high.end()));
+    };
+    const auto& keys = channel_.curve().keys().keys;
+    std::tie(low_, high_) = extent(std::clamp(keys.front().frame, first_, last_),
+                                   std::clamp(keys.back().frame, first_, last_));
+    auto [lowest, highest] = extent(first_, last_);
+    for (const KeyHandle<D>& handle : handles_) {
+      if (!is_seen(handle.frame)) continue;
+      for (const double value : handle.value) {
+        lowest = std::min(lowest, value);
+        highest = std::max(highest, value);
       }
     }
+    const double room = high_ > low_ ? high_ - low_ : std::numeric_limits<double>::infinity();
     constexpr double largest = 1e300;
-    panel_.low = std::clamp(panel_.low, -largest, largest);
-    panel_.high = std::clamp(panel_.high, -largest, largest);
-    const double air = panel_.high > panel_.low ? 0.08 * (panel_.high - panel_.low)
-                                                : std::max(1.0, 0.1 * std::abs(panel_.high));
-    panel_.low -= air;
-    panel_.high += air;
+    low_ = std::clamp(std::max(low_ - room, lowest), -largest, largest);
+    high_ = std::clamp(std::min(high_ + room, highest), -largest, largest);
   }
 
-  std::pair<double, double> extent(double from, double to) const {
-    const auto range = channel_.curve().range(from, to);
-    return {*std::min_element(range.low.begin(), range.low.end()),
-            *std::max_element(range.high.begin(), range.high.end())};
-  }
-
-  bool is_seen(double frame) const { return frame >= panel_.first && frame <= panel_.last; }
+  bool is_seen(double frame) const { return frame >= first_ && frame <= last_; }
 
   // One component has the first colour, three have x, y, z in red, green and blue.
-  static int colour(int component) { return D == 1 ? 0 : component + 1; }
+  static int colour(int component) { return D == 1 ? 0 : (component + 1) % 3; }
+
+  std::string label(double value) const {
+    if (is_switch_) return value == 0 ? "false" : "true";
+    const bool is_rounded = std::abs(value) < 1e-9 * (high_ - low_);  // zero but for rounding
+    return fmt::format("{:.5g}", is_rounded ? 0.0 : value + 0.0);     // not -0
+  }
 
   void draw_legend() {
-    double x = width - right_margin;
-    const auto entry = [&](std::string_view label, std::string_view mark) {
-      x -= 8.0 * static_cast<double>(label.size()) + 26;
-      text_ +=
-          fmt::format("<g transform=\"translate({} {})\">{}<text x=\"20\" y=\"4\">{}</text></g>\n",
-                      coordinate(x), coordinate(panel_.top - 13), mark, label);
+    double place = right;
+    const auto entry = [&](std::string_view name, int colour, std::string_view mark) {
+      place -= 8.0 * static_cast<double>(name.size()) + 26;
+      add("<g class=\"c{}\" transform=\"translate({} {})\">{}<text x=\"20\" "
+          "y=\"4\">{}</text></g>\n",
+          colour, place, top_ - 13, mark, name);
     };
     if (!handles_.empty()) {
-      entry("handle",
+      entry("handle", 0,
             "<path class=\"handle\" d=\"M0 0H11\"/><circle class=\"tip\" cx=\"12\" r=\"3\"/>");
     }
-    if (channel_.is_animated()) entry("key", "<path class=\"key k0\" d=\"M8 -5l5 5-5 5-5-5z\"/>");
+    if (channel_.is_animated())
+      entry("key", 0, fmt::format("<path class=\"key\" d=\"M8 0{}\"/>", diamond));
     for (int c = D - 1; D > 1 && c >= 0; --c) {
-      entry(std::string_view("xyz").substr(static_cast<std::size_t>(c), 1),
-            fmt::format("<path class=\"curve c{}\" d=\"M0 0H14\"/>", colour(c)));
+      entry(std::string_view("xyz").substr(static_cast<std::size_t>(c), 1), colour(c),
+            "<path class=\"curve\" d=\"M0 0H14\"/>");
     }
-  }
-
-  void draw_grid() {
-    const double value_step = is_switch_ ? 1 : nice_step(panel_.high - panel_.low, 5);
-    for (double k = std::ceil(panel_.low / value_step); k * value_step <= panel_.high; ++k) {
-      const std::string y = coordinate(panel_.y(k * value_step));
-      text_ += fmt::format("<path class=\"{}\" d=\"M{} {}H{}\"/>\n", k == 0 ? "zero" : "grid",
-                           coordinate(left_margin), y, coordinate(width - right_margin));
-      text_ += fmt::format("<text x=\"{}\" y=\"{}\" dy=\"4\" text-anchor=\"end\">{}</text>\n",
-                           coordinate(left_margin - 8), y, value_label(k * value_step));
-    }
-    const double frame_step = std::max(nice_step(panel_.last - panel_.first, 12),
-                                       std::min(1.0, panel_.last - panel_.first));
-    for (double k = std::ceil(panel_.first / frame_step); k * frame_step <= panel_.last; ++k) {
-      const std::string x = coordinate(panel_.x(k * frame_step));
-      text_ += fmt::format("<path class=\"grid\" d=\"M{} {}v{}\"/>\n", x, coordinate(panel_.top),
-                           coordinate(panel_height));
-      text_ += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{:g}</text>\n", x,
-                           coordinate(panel_.top + panel_height + 16), k * frame_step + 0.0);
-    }
-  }
-
-  std::string value_label(double value) const {
-    if (is_switch_) return value == 0 ? "false" : value == 1 ? "true" : "";
-    return fmt::format("{:g}", value + 0.0);  // not -0
   }
 
   void draw_curve(int c) {
     if (!channel_.is_animated()) {
-      const double value = channel_.at(panel_.first)[c];
-      Path path;
-      path.move_to(panel_.at(panel_.first, value));
-      path.line_to(panel_.at(panel_.last, value));
-      add_path(path.take(), c, false);
+      add("<path class=\"curve c{}\" d=\"M{} {:.1f}H{}\"/>\n", colour(c), left,
+          y(channel_.at(first_)[c]), right);
       return;
     }
     const auto& keys = channel_.curve().keys().keys;
-    const double first_key = keys.front().frame, last_key = keys.back().frame;
-    draw_span(c, panel_.first, std::min(first_key, panel_.last), true);
-    draw_span(c, std::max(first_key, panel_.first), std::min(last_key, panel_.last), false);
-    draw_span(c, std::max(last_key, panel_.first), panel_.last, true);
+    const double from = std::clamp(keys.front().frame, first_, last_);
+    const double to = std::clamp(keys.back().frame, first_, last_);
+    draw_span(c, first_, from, true);
+    draw_span(c, from, to, false);
+    draw_span(c, to, last_, true);
   }
 
-  // Draws the curve between two frames, exact on both sides of each key in between.
+  // Draws the curve between two frames, a point a pixel, exact on both sides of each key.
   void draw_span(int c, double from, double to, bool is_outside) {
     if (!(from < to)) return;
     Sampler<D> sampler(channel_.curve());
-    const double pixels = panel_.x(to) - panel_.x(from);
-    const auto count = static_cast<int>(std::ceil(samples_a_pixel * pixels)) + 1;
-    const auto& keys = channel_.curve().keys().keys;
-    auto key = std::upper_bound(keys.begin(), keys.end(), from,
-                                [](double frame, const Key<D>& k) { return frame < k.frame; });
-    Path path;
-    // At joints, starts with the value after `from` and ends with the value before `to`.
-    path.move_to(panel_.at(from, sampler.value(from)[c]));
-    for (int k = 1; k <= count; ++k) {
+    std::vector<double> frames;
+    const int count = static_cast<int>(std::ceil(x(to) - x(from))) + 1;
+    for (int k = 1; k < count; ++k) frames.push_back(from + (to - from) * k / count);
+    for (const Key<D>& key : channel_.curve().keys().keys)
+      if (key.frame > from && key.frame < to) frames.push_back(key.frame);
+    std::sort(frames.begin(), frames.end());
+    frames.push_back(to);
+    double start_x = x(from), start_y = y(sampler.value(from)[c]);
+    add("<path class=\"curve c{}{}\" d=\"M{:.1f} {:.1f}", colour(c), is_outside ? " outside" : "",
+        start_x, start_y);
+    // The slopes of lines from the start that pass all points since within a twentieth of a pixel.
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    double least = -infinity, most = infinity, end_x = start_x, end_y = start_y;
+    const auto line_to_end = [&] {
+      if (end_x != start_x || end_y != start_y) add("L{:.1f} {:.1f}", end_x, end_y);
+      start_x = end_x, start_y = end_y, least = -infinity, most = infinity;
+    };
+    const auto pass = [&](double to_x, double to_y) {
+      const auto slope = [&](double at_y) { return (at_y - start_y) / (to_x - start_x); };
+      if (!(slope(to_y) >= least && slope(to_y) <= most)) line_to_end();
+      end_x = to_x, end_y = to_y;
+      if (to_x <= start_x) return line_to_end();
+      least = std::max(least, slope(to_y - 0.05)), most = std::min(most, slope(to_y + 0.05));
+    };
+    for (const double frame : frames) {
       if (poll_.after(parts_of_key)) return;
-      const double frame = k == count ? to : from + (to - from) * k / count;
-      for (; key != keys.end() && key->frame < frame; ++key) {
-        if (poll_.after(parts_of_key)) return;
-        path.line_to(panel_.at(key->frame, sampler.left_value(key->frame)[c]));
-        path.line_to(panel_.at(key->frame, sampler.value(key->frame)[c]));
-      }
-      path.line_to(
-          panel_.at(frame, k == count ? sampler.left_value(frame)[c] : sampler.value(frame)[c]));
+      pass(x(frame), y(sampler.left_value(frame)[c]));
+      pass(x(frame), y(sampler.value(frame)[c]));
     }
-    if (!is_outside || to < panel_.last) path.line_to(panel_.at(to, sampler.value(to)[c]));
-    add_path(path.take(), c, is_outside);
-  }
-
-  void add_path(const std::string& path, int c, bool is_outside) {
-    text_ += fmt::format("<path class=\"curve c{}{}\" d=\"{}\"/>\n", colour(c),
-                         is_outside ? " outside" : "", path);
+    line_to_end();
+    add("\"/>\n");
   }
 
   void draw_handles(int c) {
     for (const KeyHandle<D>& handle : handles_) {
       if (poll_.after(parts_of_key)) return;
       if (!is_seen(handle.key_frame)) continue;
-      const Point key = panel_.at(handle.key_frame, handle.key_value[c]);
-      const Point tip = panel_.at(handle.frame, handle.value[c]);
-      text_ += fmt::format("<path class=\"handle\" d=\"M{} {}L{} {}\"/>", coordinate(key.x),
-                           coordinate(key.y), coordinate(tip.x), coordinate(tip.y));
-      text_ += fmt::format("<circle class=\"tip\" cx=\"{}\" cy=\"{}\" r=\"3\"/>\n",
-                           coordinate(tip.x), coordinate(tip.y));
+      const double tip_x = x(handle.frame), tip_y = y(handle.value[c]);
+      add("<path class=\"handle\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>", x(handle.key_frame),
+          y(handle.key_value[c]), tip_x, tip_y);
+      add("<circle class=\"tip\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n", tip_x, tip_y);
     }
   }
 
@@ -332,17 +226,16 @@ class ChannelPlot {
     for (const Key<D>& key : channel_.curve().keys().keys) {
       if (poll_.after(parts_of_key)) return;
       if (!is_seen(key.frame)) continue;
-      const Point at = panel_.at(key.frame, key.value[c]);
-      text_ +=
-          fmt::format("<path class=\"key k{}\" d=\"M{} {}m0 -5.5l5.5 5.5-5.5 5.5-5.5-5.5z\"/>\n",
-                      colour(c), coordinate(at.x), coordinate(at.y));
+      add("<path class=\"key c{}\" d=\"M{:.1f} {:.1f}{}\"/>\n", colour(c), x(key.frame),
+          y(key.value[c]), diamond);
     }
   }
 
   const Channel<D>& channel_;
-  const std::string& path_;
-  bool is_switch_;
-  Panel panel_;
+  const bool is_switch_;
+  const double first_, last_;  // frames
+  const double top_;           // of the plotted area [px]
+  double low_ = 0, high_ = 0;  // values
   StopPoll& poll_;
   std::vector<KeyHandle<D>> handles_;
   std::string text_;
@@ -353,31 +246,28 @@ class ChannelPlot {
 std::string curve_plot(std::span<const NamedChannel> channels, double first, double last,
                        const std::string& title, const StopRequest& should_stop) {
   StopPoll poll(should_stop);
-  const double panel = header + panel_height + panel_gap;
-  const double height = top_margin + panel * static_cast<double>(channels.size()) + bottom_margin;
+  const double height = header - 14 + panel_step * static_cast<double>(channels.size());
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
-      "viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"Curves of {2}\">\n",
-      coordinate(width), coordinate(height), title);
-  text += style;
-  text += "<rect class=\"back\" width=\"100%\" height=\"100%\"/>\n";
-  text += fmt::format("<text class=\"title\" x=\"{}\" y=\"30\">{}</text>\n",
-                      coordinate(left_margin), title);
-  text += fmt::format("<text x=\"{}\" y=\"30\" text-anchor=\"end\">frames {:g} to {:g}</text>\n",
-                      coordinate(width - right_margin), first, last);
-  double top = top_margin;
+      "viewBox=\"0 0 {0} {1}\" role=\"img\" aria-label=\"Curves of {2}\">\n{3}"
+      "<rect class=\"back\" width=\"100%\" height=\"100%\"/>\n"
+      "<text class=\"name\" x=\"{4}\" y=\"30\">{2}</text>\n"
+      "<text x=\"{5}\" y=\"30\" text-anchor=\"end\">frames {6:g} to {7:g}</text>\n",
+      width, height, title, style, left, right, first, last);
+  double top = header;
   for (const NamedChannel& channel : channels) {
+    const auto plot = [&]<int D>(const Channel<D>& held, bool is_switch) {
+      return ChannelPlot<D>(held, is_switch, first, last, top, poll).draw(channel.path);
+    };
     text += std::visit(
         [&]<class C>(const C* held) {
-          if constexpr (std::is_same_v<C, Switch>) {
-            return ChannelPlot<1>(held->channel(), channel.path, true, first, last, top, poll)
-                .draw();
-          } else {
-            return ChannelPlot(*held, channel.path, false, first, last, top, poll).draw();
-          }
+          if constexpr (std::is_same_v<C, Switch>)
+            return plot(held->channel(), true);
+          else
+            return plot(*held, false);
         },
         channel.channel);
-    top += panel;
+    top += panel_step;
   }
   return text + "</svg>\n";
 }
