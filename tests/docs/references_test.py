@@ -1,5 +1,5 @@
 """Checks that what the sources refer to exists: equations of docs/model.md and docs/timeline.md, sections of
-docs/spec.md (as "SPEC 5"), sections of the thesis that docs/thesis.md lists, pages of docs/ and their titles.
+its rules (as "SPEC 5"), sections of the thesis that docs/thesis.md lists, pages of docs/ and their titles.
 
 usage: references_test.py SOURCE_FOLDER
 """
@@ -47,12 +47,12 @@ class Documents:
             "model.md": re.findall(r"^ {4}.* {2}\((\d+[a-z]?)\)$", self.pages["model.md"], re.MULTILINE),
             "timeline.md": re.findall(r"(?:^ {2}|\| |`: )\((\d+[a-z]?)\) (?!and )", self.pages["timeline.md"],
                                       re.MULTILINE)}
-        parts = re.split(r"^## (\d+)\. ", self.pages["spec.md"], flags=re.MULTILINE)
+        parts = re.split(r"^## (\d+)\. ", self.pages["model.md"], flags=re.MULTILINE)
         self.spec = dict(zip(parts[1::2], parts[2::2]))
         listed = self.pages["thesis.md"].partition("## Sections that the code cites\n")[2].partition("\n## ")[0]
         self.thesis = re.findall(r"^\| (\d+(?:\.\d+)*) \|", listed, re.MULTILINE)
 
-        for heading in re.findall(r"^## \d.*\((.*)\)$", self.pages["spec.md"], re.MULTILINE):
+        for heading in re.findall(r"^## \d.*\((.*)\)$", self.pages["model.md"], re.MULTILINE):
             for section in re.findall(r"(?<!fig\. )(?<!eq\. )\b\d+(?:\.\d+)*", heading):
                 assert section in self.thesis, f"docs/thesis.md does not list section {section} of the thesis"
 
@@ -78,11 +78,11 @@ class Documents:
                 expect(found, number in self.equations.get(page, []), f"docs/{page} has no equation ({number})")
         for found in SPEC.finditer(text):
             for number in numbers(found[1]):
-                expect(found, number in self.spec, f"docs/spec.md has no section {number}")
+                expect(found, number in self.spec, f"docs/model.md has no section {number}")
             if found[2]:
                 section = self.spec.get(numbers(found[1])[-1], "")
                 expect(found, " ".join(found[2].split()).lower() in section.lower(),
-                       f"section {found[1]} of docs/spec.md does not mention \"{found[2]}\"")
+                       f"section {found[1]} of docs/model.md does not mention \"{found[2]}\"")
         for found in ELSEWHERE.finditer(text):
             expect(found, False, f"{found[1] or found[2]} is no page of docs/")
         for found in THESIS.finditer(text):
@@ -154,7 +154,7 @@ def check_the_check(documents):
                  "// docs/timeline.md,\n// eq. 6a", "// SPEC 7, \"Transforms\"", "// docs/model.md, \"Release\""):
         assert documents.faults("lib/a.cpp", text) == [], text
     for text in ("// Eq. (99)", "// eq. (41) to (98)", "// docs/timeline.md,\n// eq. 14 to 99", "// eq. (6a)",
-                 "// Eq. (0) of docs/model.md", "// docs/spec.md, eq. (1)", "// SPEC 12", "// SPEC 2 and\n/// 99",
+                 "// Eq. (0) of docs/model.md", "// docs/timeline.md, eq. (99)", "// SPEC 12", "// SPEC 2 and\n/// 99",
                  "// SPEC 5.9", "// SPEC 7, \"Nothing\"", "// thesis 5.9.1", "// docs/nothing.md",
                  "// docs/model.md, \"Nothing\"", "// PHYSICS 3.", "// as in MESHES", "// CONTROL\n// 5", "// CLI.md"):
         assert len(documents.faults("lib/a.cpp", text)) == 1, (text, documents.faults("lib/a.cpp", text))
