@@ -53,7 +53,7 @@ class LineContent : private JsonReader {
     });
     header.solver = required_text(root_, "solver");
     header.factors = required_text(root_, "factors");
-    header.start = required_int(root_, "start", std::numeric_limits<int>::min());
+    header.start = required_int(root_, "start");
     header.end = required_int(root_, "end", header.start);
     each_required(root_, "surfaces", [&](auto& json) { header.surfaces.push_back(surface(json)); });
     if (fault_) return fault();
@@ -62,7 +62,7 @@ class LineContent : private JsonReader {
 
   Result<ReplayFrame> frame(const std::vector<ReplaySurface>& surfaces) {
     ReplayFrame frame;
-    frame.number = required_int(root_, "frame", std::numeric_limits<int>::min());
+    frame.number = required_int(root_, "frame");
     each_required(root_, "surfaces", [&](auto& json) {
       const std::size_t k = frame.surfaces.size();
       if (k == surfaces.size()) return refuse("", "is one more than the surfaces of the log");
@@ -92,10 +92,6 @@ class LineContent : private JsonReader {
   }
 
  private:
-  int required_int(JsonReader::Json& parent, const char* key, int least) {
-    return static_cast<int>(required_integer(parent, key, least, std::numeric_limits<int>::max()));
-  }
-
   ReplaySurface surface(JsonReader::Json& json) {
     ReplaySurface surface{.name = required_text(json, "name")};
     if (member(json, "grid")) {

@@ -115,19 +115,14 @@ class LineContent : private JsonReader {
   }
 
  private:
-  int frame(const char* key) {
-    using Limits = std::numeric_limits<int>;
-    return static_cast<int>(required_integer(root_, key, Limits::min(), Limits::max()));
-  }
-
   Measures measures() {
     return {.peak = required_number(root_, "peak"),
-            .peak_frame = frame("peakFrame"),
+            .peak_frame = required_int(root_, "peakFrame"),
             .final = required_number(root_, "final"),
             .rms = required_number(root_, "rms"),
             .speed = required_number(root_, "speed"),
             .energy = required_number(root_, "energy"),
-            .settle = frame("settle"),
+            .settle = required_int(root_, "settle"),
             .hash = required_hash(root_, "hash")};
   }
 };

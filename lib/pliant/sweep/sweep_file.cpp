@@ -207,16 +207,6 @@ class SweepFileReader : private JsonReader {
  private:
   static constexpr auto most_whole = std::numeric_limits<std::int64_t>::max();
 
-  Json* required_part(Json& parent, const char* key) {
-    if (!member(parent, key)) refuse(key, "is missing");
-    return part(parent, key);
-  }
-
-  std::vector<std::string> required_texts(Json& parent, const char* key) {
-    if (!member(parent, key)) refuse(key, "is missing");
-    return texts(parent, key);
-  }
-
   // A member that must be there; null: it is null.
   Json* given(Json& parent, const char* key) {
     Json* const json = member(parent, key);
@@ -268,22 +258,14 @@ class SweepFileReader : private JsonReader {
     });
     each_required(root_, "axes", [&](Json& json) {
       TakeAxis& axis = parts.axes.emplace_back();
-      each_path(json, axis.paths);
+      if (!member(json, "paths")) refuse("paths", "is missing");
+      for (const std::uint64_t path : wholes(json, "paths"))
+        axis.paths.push_back(static_cast<std::size_t>(path));
       axis.count = static_cast<std::size_t>(required_whole(json, "count"));
       if (!texts(json, "texts").empty()) refuse("texts", "is no list of texts");
       if (parts.axes.size() <= texts_.size()) axis.texts = std::move(texts_[parts.axes.size() - 1]);
     });
     return {};
-  }
-
-  void each_path(Json& json, std::vector<std::size_t>& paths) {
-    Json* const list = member(json, "paths");
-    if (!list || !list->is_array()) return refuse("paths", "is missing");
-    for (std::size_t k = 0; k < list->size() && goes_on(); ++k) {
-      const auto path = to_whole((*list)[k]);
-      if (!path) refuse("paths", "has an element that is not a whole number of at least 0");
-      paths.push_back(static_cast<std::size_t>(path.value_or(0)));
-    }
   }
 
   std::vector<TextList> texts_;

@@ -226,14 +226,8 @@ class DocumentReader : private JsonReader {
 
   std::vector<std::size_t> node_list(Json& parent, const char* key) {
     std::vector<std::size_t> nodes;
-    const Json* const list = member(parent, key);
-    if (!list) return nodes;
-    if (!list->is_array()) refuse(key, "is not a list");
-    for (std::size_t k = 0; k < list->size() && goes_on(); ++k) {
-      const auto number = to_whole((*list)[k]);
-      if (!number) refuse(key, "has an element that is not a whole number of at least 0");
-      if (number) nodes.push_back(checked_index(*number, key, "nodes").value_or(0));
-    }
+    for (const std::uint64_t number : wholes(parent, key))
+      nodes.push_back(checked_index(number, key, "nodes").value_or(0));
     return nodes;
   }
 

@@ -232,6 +232,11 @@ JsonReader::Json* JsonReader::part(JsonValue& parent, const char* key) {
   return nullptr;
 }
 
+JsonReader::Json* JsonReader::required_part(JsonValue& parent, const char* key) {
+  if (!member(parent, key)) refuse(key, "is missing");
+  return part(parent, key);
+}
+
 std::optional<std::string> JsonReader::text(JsonValue& parent, const char* key) {
   JsonValue* const json = member(parent, key);
   if (!json) return {};
@@ -258,6 +263,11 @@ std::vector<std::string> JsonReader::texts(JsonValue& parent, const char* key) {
   return texts;
 }
 
+std::vector<std::string> JsonReader::required_texts(JsonValue& parent, const char* key) {
+  if (!member(parent, key)) refuse(key, "is missing");
+  return texts(parent, key);
+}
+
 Hash JsonReader::required_hash(JsonValue& parent, const char* key) {
   const auto hash = to_hash(required_text(parent, key));
   if (!hash) refuse(key, "is not a hash");
@@ -281,6 +291,19 @@ std::uint64_t JsonReader::required_whole(JsonValue& parent, const char* key) {
   return whole(parent, key).value_or(0);
 }
 
+std::vector<std::uint64_t> JsonReader::wholes(JsonValue& parent, const char* key) {
+  std::vector<std::uint64_t> numbers;
+  const JsonValue* const list = member(parent, key);
+  if (!list) return numbers;
+  if (!list->is_array()) refuse(key, "is not a list");
+  for (std::size_t k = 0; k < list->size() && goes_on(); ++k) {
+    const auto number = to_whole((*list)[k]);
+    if (!number) refuse(key, "has an element that is not a whole number of at least 0");
+    if (number) numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::int64_t JsonReader::required_integer(JsonValue& parent, const char* key, std::int64_t least,
                                           std::int64_t most) {
   const JsonValue* const json = member(parent, key);
@@ -289,6 +312,10 @@ std::int64_t JsonReader::required_integer(JsonValue& parent, const char* key, st
   if (!number || *number < least || *number > most)
     refuse(key, fmt::format("is not a whole number from {} to {}", least, most));
   return number.value_or(0);
+}
+
+int JsonReader::required_int(JsonValue& parent, const char* key, int least) {
+  return static_cast<int>(required_integer(parent, key, least, std::numeric_limits<int>::max()));
 }
 
 // As an std::int64_t a number that is too large would wrap round.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -109,21 +110,26 @@ class JsonReader {
 
   /// An object that may be missing.
   Json* part(Json& parent, const char* key);
+  Json* required_part(Json& parent, const char* key);
 
   std::optional<std::string> text(Json& parent, const char* key);
   std::string required_text(Json& parent, const char* key);
   /// A list, which may be missing.
   std::vector<std::string> texts(Json& parent, const char* key);
+  std::vector<std::string> required_texts(Json& parent, const char* key);
   Hash required_hash(Json& parent, const char* key);
 
   /// A whole number of at least 0.
   static std::optional<std::uint64_t> to_whole(const Json& json);
   std::optional<std::uint64_t> whole(Json& parent, const char* key);
   std::uint64_t required_whole(Json& parent, const char* key);
+  /// A list, which may be missing.
+  std::vector<std::uint64_t> wholes(Json& parent, const char* key);
 
   static std::optional<std::int64_t> to_integer(const Json& json);
   std::int64_t required_integer(Json& parent, const char* key, std::int64_t least,
                                 std::int64_t most);
+  int required_int(Json& parent, const char* key, int least = std::numeric_limits<int>::min());
   double required_number(Json& parent, const char* key);
 
   /// `count` numbers; nullopt: the member is missing.
