@@ -105,8 +105,8 @@ Result<void> Editor::scale_constant(const Spot& spot, const Scale& scale) {
   for (const std::string_view word : words) {
     const auto number = xml::parse_number(word);
     if (!number || !spot.format.is_keyable)
-      return draft_.refuse(fmt::format("{} is {}, of which there are no multiples", spot.path,
-                                       xml::in_quotes(*value)));
+      return draft_.refuse(
+          fmt::format("{} is {}, of which there are no multiples", spot.path, in_quotes(*value)));
     numbers.push_back(with_digits(scale.factor * *number, scale.digits));
   }
   std::string result = changed_words(*value, to_text(numbers));

@@ -9,8 +9,6 @@
 
 namespace pliant::edit {
 
-using xml::in_quotes;
-
 namespace {
 
 constexpr const char* radius = "deformationRadius";

@@ -11,8 +11,6 @@
 
 namespace pliant::edit {
 
-using xml::in_quotes;
-
 namespace {
 
 /// Names between blanks, without those of a list. Null: nothing is left.

@@ -106,7 +106,7 @@ Result<void> Editor::insert_part(const Spot& spot, const xml::ElementText& part)
     const ScenePlace at = scene_.origin.place_of(name, attribute);
     return draft_.refuse(
         fmt::format("the <{}> of {} does not stand in this file, but in {}:{}; edit that file",
-                    part.name, xml::in_quotes(name), at.file, at.line));
+                    part.name, in_quotes(name), at.file, at.line));
   }
   std::vector<std::string_view> before;
   for (const ChildFormat& child : format_of(draft_.name(spot.object)).children) {
@@ -189,13 +189,13 @@ Result<void> Editor::operator()(const SetPart& set) {
   if (!object) return fail(object.error());
   if (draft_.name(*object) != Description<Surface>::element)
     return draft_.refuse(
-        fmt::format("{} is no surface, so it has no parts", xml::in_quotes(set.surface)));
+        fmt::format("{} is no surface, so it has no parts", in_quotes(set.surface)));
   std::vector<std::string_view> allowed;
   for (const ChildFormat& child : format_of(draft_.name(*object)).children)
     if (child.is_part) allowed.push_back(child.names.front());
   if (std::ranges::find(allowed, set.part) == allowed.end())
     return draft_.refuse(fmt::format("{} is no part that can be set; allowed: {}",
-                                     xml::in_quotes(set.part), fmt::join(allowed, ", ")));
+                                     in_quotes(set.part), fmt::join(allowed, ", ")));
   if (set.comment.find("--") != std::string::npos || set.comment.ends_with('-'))
     return draft_.refuse("a comment must not contain --, or end with -");
   const auto name_part = [&](std::string_view attribute) {

@@ -10,8 +10,6 @@
 
 namespace pliant::edit {
 
-using xml::in_quotes;
-
 namespace {
 
 std::string hint_of(std::string_view word, const std::vector<std::string>& known) {

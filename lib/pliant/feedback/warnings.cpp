@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/shortened.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 
 namespace pliant {
@@ -11,14 +12,12 @@ namespace {
 // `"a", "b" and "c"`, or `"a", "b", … and 7 more`.
 std::string names_text(const std::string& first, const std::vector<std::string>& others) {
   constexpr std::size_t most = 6;
-  const bool is_long = others.size() + 1 > most;
-  const std::size_t told = is_long ? most - 1 : others.size();
-  std::string text = fmt::format("\"{}\"", first);
-  for (std::size_t k = 0; k < told; ++k) {
-    const bool is_last = !is_long && k + 1 == told;
-    text += fmt::format("{}\"{}\"", is_last ? " and " : ", ", others[k]);
-  }
-  return is_long ? text + fmt::format(" and {} more", others.size() - told) : text;
+  std::vector<std::string> told = {fmt::format("\"{}\"", first)};
+  for (const std::string& other : others) told.push_back(fmt::format("\"{}\"", other));
+  if (told.size() <= most) return in_words(told);
+  const std::size_t more = told.size() - most;
+  told.resize(most);
+  return fmt::format("{} and {} more", fmt::join(told, ", "), more);
 }
 
 // Authors do not read longer lists.

@@ -34,19 +34,6 @@ Error in_file(Error error, const std::string& file) {
   return error;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 40;
-  std::size_t size = std::min(text.size(), longest);
-  // Not within a character of UTF-8.
-  while (size > 0 && size < text.size() &&
-         (static_cast<unsigned char>(text[size]) & 0xc0U) == 0x80U)
-    --size;
-  std::string quoted(text.substr(0, size));
-  for (char& c : quoted)  // a message is one line
-    if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
-  return fmt::format("\"{}{}\"", quoted, size < text.size() ? "…" : "");
-}
-
 std::string listed_names(std::span<const std::string> names) {
   std::string list;
   for (const std::string& name : names.first(std::min(names.size(), most_listed)))
@@ -138,13 +125,10 @@ void LeftOut::add(std::string_view one, std::string_view several, std::int64_t c
 }
 
 std::string LeftOut::text() const {
-  std::string text;
-  for (std::size_t k = 0; k < kinds_.size(); ++k) {
-    const auto& [one, several, count] = kinds_[k];
-    if (k > 0) text += k + 1 < kinds_.size() ? ", " : " and ";
-    text += fmt::format("{} {}", count, count == 1 ? one : several);
-  }
-  return text;
+  std::vector<std::string> texts;
+  for (const auto& [one, several, count] : kinds_)
+    texts.push_back(fmt::format("{} {}", count, count == 1 ? one : several));
+  return in_words(texts);
 }
 
 Result<void> check_uv_set(int uv_set, int set_count) {

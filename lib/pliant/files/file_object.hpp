@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/shortened.hpp"
 #include "pliant/files/mesh_objects.hpp"
 #include "pliant/mesh/mesh.hpp"
 
@@ -20,9 +21,6 @@ inline constexpr std::size_t largest_mesh_file = std::size_t{4} << 30;
 
 /// The error of reading a file, with its name; Interrupted has none.
 Error in_file(Error error, const std::string& file);
-
-/// Text from a file for a message: in quotes, and shortened.
-std::string in_quotes(std::string_view text);
 
 /// The first of some names, each in quotes.
 std::string listed_names(std::span<const std::string> names);

@@ -209,7 +209,7 @@ std::string attribute_hint(std::string_view element, std::string_view word,
     }
   }
   if (!meant.empty())
-    return fmt::format("; did you mean {}? allowed: {}", joined_words(meant), listed(allowed));
+    return fmt::format("; did you mean {}? allowed: {}", in_words(meant), listed(allowed));
   if (const auto near = nearest_word(word, allowed)) own.push_back(*near);
   return hint(word, allowed);
 }
@@ -227,13 +227,6 @@ std::string channel_hint(std::string_view element, std::string_view word,
                          std::span<const std::string_view> allowed) {
   std::vector<std::string_view> own;
   return attribute_hint(elements_of(element), word, allowed, own);
-}
-
-std::string joined_words(std::span<const std::string> words) {
-  std::string text = words.front();
-  for (std::size_t k = 1; k < words.size(); ++k)
-    text += (k + 1 == words.size() ? " and " : ", ") + words[k];
-  return text;
 }
 
 }  // namespace pliant::xml

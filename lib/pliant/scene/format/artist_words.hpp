@@ -48,7 +48,4 @@ std::string attribute_hint(std::span<const std::string_view> elements, std::stri
 std::string channel_hint(std::string_view element, std::string_view word,
                          std::span<const std::string_view> allowed);
 
-/// `b, c and d`. Requires: a word.
-std::string joined_words(std::span<const std::string> words);
-
 }  // namespace pliant::xml

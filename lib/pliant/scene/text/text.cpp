@@ -153,18 +153,6 @@ Reading<double> parse_rate(std::string_view text) {
   return rate;
 }
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 60;  // bytes; fits on a line of a terminal
-  std::string_view shown = text.substr(0, longest);
-  if (shown.size() < text.size())  // do not cut within a character: continuation bytes are 10xxxxxx
-    while (!shown.empty() && (static_cast<unsigned char>(text[shown.size()]) & 0xC0U) == 0x80U)
-      shown.remove_suffix(1);
-  std::string result = "\"";
-  for (const char c : shown) result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  if (shown.size() < text.size()) result += "…";
-  return result + '"';
-}
-
 std::string listed(std::span<const std::string_view> words) {
   return fmt::format("{}", fmt::join(words, ", "));
 }

@@ -9,6 +9,8 @@
 
 #include <tl/expected.hpp>
 
+#include "pliant/core/shortened.hpp"
+
 /// The parts of the scene reader; programs need only read.hpp and format.hpp.
 namespace pliant::xml {
 
@@ -49,10 +51,6 @@ Reading<bool> parse_boolean(std::string_view text);
 
 /// A number greater than 0, or a fraction of two such as `24000/1001`: the double quotient.
 Reading<double> parse_rate(std::string_view text);
-
-/// The text in double quotes, for one line of a message: control characters become blanks, and a
-/// long text is cut.
-std::string in_quotes(std::string_view text);
 
 /// `one, two, three`.
 std::string listed(std::span<const std::string_view> words);
