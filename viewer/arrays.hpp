@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/core/byte_order.hpp"
 #include "viewer/json.hpp"
 
 namespace pliant::viewer {
@@ -41,9 +42,8 @@ inline std::string joined(const Json& head, const std::string& arrays) {
   // An author's text may contain bytes that are not UTF-8.
   std::string text = head.dump(-1, ' ', false, Json::error_handler_t::replace);
   text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto length = static_cast<std::uint32_t>(text.size());
-  std::string bytes(sizeof(length), '\0');
-  std::memcpy(bytes.data(), &length, sizeof(length));
+  std::string bytes;
+  append_number(bytes, static_cast<std::uint32_t>(text.size()));
   return bytes + text + arrays;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
 
 #include <zlib.h>
 
@@ -48,24 +47,6 @@ Result<std::string> deflated(std::string_view bytes, const StopRequest& should_s
   if (is_stopped) return interrupted();
   if (status != Z_STREAM_END) return no_memory();
   return packed;
-}
-
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    const std::string_view three = bytes.substr(k, 3);
-    std::uint32_t bits = 0;
-    for (std::size_t byte = 0; byte < 3; ++byte) {
-      bits = bits << 8 | (byte < three.size() ? static_cast<unsigned char>(three[byte]) : 0U);
-    }
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-      text.push_back(digit <= three.size() ? digits[bits >> (18 - 6 * digit) & 63] : '=');
-    }
-  }
-  return text;
 }
 
 }  // namespace pliant::viewer

@@ -11,7 +11,4 @@ namespace pliant::viewer {
 /// A raw deflate stream (RFC 1951) of the bytes. Errors: OutOfMemory; Interrupted.
 Result<std::string> deflated(std::string_view bytes, const StopRequest& should_stop = {});
 
-/// Base 64 with padding (RFC 4648).
-std::string base64(std::string_view bytes);
-
 }  // namespace pliant::viewer

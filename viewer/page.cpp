@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "pliant/core/base64.hpp"
 #include "viewer/bytes.hpp"
 
 namespace pliant::viewer {

@@ -10,17 +10,15 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include "pliant/core/byte_order.hpp"
+
 namespace pliant::viewer {
 namespace {
 
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
 
 std::uint32_t number_at(std::string_view bytes, std::size_t place) {
-  std::uint32_t number = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    number = (number << 8) | static_cast<unsigned char>(bytes[place + k]);
-  }
-  return number;
+  return number_from<std::uint32_t>(bytes.data() + place, std::endian::big);
 }
 
 const Bytef* zlib_bytes(std::string_view bytes) {

@@ -7,6 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "pliant/core/byte_order.hpp"
+
 namespace pliant::viewer {
 namespace {
 
@@ -116,7 +118,7 @@ Json table_json(const SweepFolder& folder, const SweepStatus& status,
     takes.push_back(static_cast<std::uint32_t>(take));
     states.push_back(static_cast<char>(record.status));
     for (const std::uint64_t half : {record.measures.hash.high, record.measures.hash.low})
-      for (unsigned k = 8; k-- > 0;) hashes.push_back(static_cast<char>(half >> (8 * k) & 0xffU));
+      append_number(hashes, half, std::endian::big);
   }
   std::vector<Texts> texts = texts_of(folder, status, rows, should_stop);
   Json paths = Json::array();

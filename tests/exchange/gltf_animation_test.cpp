@@ -1,10 +1,11 @@
 #include <cmath>
-#include <cstring>
 #include <string>
 
 #include "exchange/round_trips.hpp"
+#include "pliant/core/base64.hpp"
 #include "pliant/exchange/euler.hpp"
 #include "pliant/exchange/rotation_track.hpp"
+#include "pliant/files/raw_bytes.hpp"
 
 namespace pliant {
 namespace {
@@ -12,19 +13,7 @@ namespace {
 using namespace testing;
 
 std::string base64(const std::vector<float>& numbers) {
-  constexpr std::string_view digits =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string bytes(numbers.size() * 4, '\0');
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  std::string text;
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    unsigned bits = 0;
-    for (std::size_t n = 0; n < 3; ++n)
-      bits = bits << 8 | (k + n < bytes.size() ? static_cast<unsigned char>(bytes[k + n]) : 0U);
-    for (std::size_t n = 0; n < 4; ++n)
-      text += k + n <= bytes.size() ? digits[bits >> (18 - 6 * n) & 63U] : '=';
-  }
-  return text;
+  return pliant::base64(bytes_of(std::span<const float>(numbers)));
 }
 
 /// A glTF with one sampler that animates `path` of a node.

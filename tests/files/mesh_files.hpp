@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "pliant/core/base64.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "support/catch.hpp"
@@ -26,19 +27,6 @@ inline std::string little_endian(std::uint64_t number, int size) {
   std::string bytes;
   for (int k = 0; k < size; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
   return bytes;
-}
-
-inline std::string base64(const std::string& bytes) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t k = 0; k < bytes.size(); k += 3) {
-    std::uint32_t bits = 0;
-    for (std::size_t n = 0; n < 3; ++n)
-      bits = bits << 8 | (k + n < bytes.size() ? static_cast<unsigned char>(bytes[k + n]) : 0u);
-    for (std::size_t n = 0; n < 4; ++n)
-      text += k + n > bytes.size() ? '=' : digits[bits >> (18 - 6 * n) & 63];
-  }
-  return text;
 }
 
 /// Builds a glTF file; its v points downwards, as the format requires.

@@ -8,7 +8,6 @@
 #include "support/catch.hpp"
 
 using namespace pliant;
-using pliant::viewer::base64;
 using pliant::viewer::deflated;
 
 namespace {
@@ -31,17 +30,6 @@ std::string inflated(const std::string& packed, std::size_t size) {
 }
 
 }  // namespace
-
-TEST_CASE("base 64 is that of RFC 4648", "[view]") {
-  CHECK(base64("").empty());
-  CHECK(base64("f") == "Zg==");
-  CHECK(base64("fo") == "Zm8=");
-  CHECK(base64("foo") == "Zm9v");
-  CHECK(base64("foob") == "Zm9vYg==");
-  CHECK(base64("fooba") == "Zm9vYmE=");
-  CHECK(base64("foobar") == "Zm9vYmFy");
-  CHECK(base64(std::string("\xff\xfe\x00\xfb", 4)) == "//4A+w==");
-}
 
 TEST_CASE("deflating ends when asked", "[view]") {
   std::mt19937 random(3);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/base64.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/euler.hpp"
@@ -17,6 +18,7 @@
 #include "pliant/exchange/held_channel.hpp"
 #include "pliant/exchange/rotation_track.hpp"
 #include "pliant/exchange/single.hpp"
+#include "pliant/files/gltf/glb.hpp"
 #include "pliant/files/gltf/gltf_spool.hpp"
 
 namespace pliant::exchange {
@@ -157,9 +159,16 @@ class GltfCurveWriter {
       if (is_stopped(writing_.should_stop)) return interrupted();
       if (auto added = add(*curve, keys); !added) return fail(added.error());
     }
-    const std::string json = document();
+    result_.bytes = document();
     if (is_stopped(writing_.should_stop)) return interrupted();
-    result_.bytes = writing_.is_binary ? as_glb(json) : json;
+    if (!writing_.is_binary) return std::move(result_);
+    const auto head = glb_head(result_.bytes, bytes_.size());
+    if (!head) {
+      return fail(ErrorCode::Unwritable,
+                  "the curves are larger than the 4 GiB that a .glb can store; .gltf can store "
+                  "more");
+    }
+    result_.bytes = *head + bytes_;
     return std::move(result_);
   }
 
@@ -332,44 +341,10 @@ class GltfCurveWriter {
       root["bufferViews"] = buffer_.views();
       GltfJson buffer = {{"byteLength", bytes_.size()}};
       if (!writing_.is_binary)
-        buffer["uri"] = "data:application/octet-stream;base64," + base64_of(bytes_);
+        buffer["uri"] = "data:application/octet-stream;base64," + base64(bytes_);
       root["buffers"] = GltfJson::array({std::move(buffer)});
     }
     return root.dump(writing_.is_binary ? -1 : 1, ' ', false, GltfJson::error_handler_t::replace);
-  }
-
-  std::string as_glb(const std::string& json) const {
-    std::string text = json, bytes = bytes_;
-    text.append((4 - text.size() % 4) % 4, ' ');
-    bytes.append((4 - bytes.size() % 4) % 4, '\0');
-    std::string result = "glTF";
-    const auto append = [&](std::size_t number) {
-      for (int k = 0; k < 4; ++k) result += static_cast<char>(number >> 8 * k & 0xff);
-    };
-    const std::size_t tail = bytes.empty() ? 0 : 8 + bytes.size();
-    append(2);
-    append(12 + 8 + text.size() + tail);
-    append(text.size());
-    result += "JSON" + text;
-    if (bytes.empty()) return result;
-    append(bytes.size());
-    result.append("BIN\0", 4);
-    return result + bytes;
-  }
-
-  static std::string base64_of(std::string_view bytes) {
-    constexpr std::string_view digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t k = 0; k < bytes.size(); k += 3) {
-      const std::size_t count = std::min<std::size_t>(3, bytes.size() - k);
-      std::uint32_t bits = 0;
-      for (std::size_t n = 0; n < 3; ++n)
-        bits = bits << 8 | (n < count ? static_cast<unsigned char>(bytes[k + n]) : 0U);
-      for (std::size_t n = 0; n < 4; ++n)
-        text += n <= count ? digits[bits >> (18 - 6 * n) & 63U] : '=';
-    }
-    return text;
   }
 
   const CurveWriting& writing_;

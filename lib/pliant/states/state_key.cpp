@@ -1,12 +1,12 @@
 #include "pliant/states/state_key.hpp"
 
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/sampling/rest_shape.hpp"
@@ -22,12 +22,10 @@ namespace {
 // The data to hash, in a fixed order. Numbers are added by their bits.
 class HashedValues {
  public:
-  void add(std::uint64_t number) {
-    for (int byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(number >> (8 * byte) & 0xff);
-  }
+  void add(std::uint64_t number) { append_number(bytes_, number); }
   void add(std::int64_t number) { add(static_cast<std::uint64_t>(number)); }
   void add(int number) { add(std::int64_t{number}); }
-  void add(double number) { add(std::bit_cast<std::uint64_t>(number)); }
+  void add(double number) { append_number(bytes_, number); }
   void add(std::string_view text) {
     add(std::uint64_t{text.size()});
     bytes_ += text;

@@ -51,7 +51,7 @@ TEST_CASE("a layout tells where each format has its numbers", "[mesh][cache]") {
     CHECK(layout.clock == clock);
     CHECK(layout.sample_count == 3);
     CHECK(layout.vertex_count == 7);
-    CHECK(layout.is_big_endian == (clock == Clock::Seconds));
+    CHECK((layout.byte_order == std::endian::big) == (clock == Clock::Seconds));
     CHECK(layout.is_double == (clock == Clock::Samples));
     CHECK(layout.seconds.size() == (clock == Clock::Seconds ? 3 : 0));
     CHECK(layout.begin + 3 * layout.sample_bytes() == bytes.size());

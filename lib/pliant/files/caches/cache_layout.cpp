@@ -1,7 +1,6 @@
 #include "pliant/files/caches/cache_layout.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -9,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/npy/npy_header.hpp"
 
@@ -16,16 +16,6 @@ namespace pliant {
 namespace {
 
 constexpr std::uint64_t most_count = std::numeric_limits<int>::max();
-
-// Four bytes as an unsigned integer.
-std::uint32_t word(const char* bytes, bool is_big_endian) {
-  std::uint32_t bits = 0;
-  for (int k = 0; k < 4; ++k) {
-    const auto byte = static_cast<unsigned char>(bytes[is_big_endian ? k : 3 - k]);
-    bits = bits << 8 | byte;
-  }
-  return bits;
-}
 
 class LayoutReader {
  public:
@@ -69,12 +59,9 @@ class LayoutReader {
   }
 
   // A signed number, of which less than 0 is none.
-  static std::uint64_t count_at(const std::string& head, std::size_t place, bool is_big_endian) {
-    const auto number = static_cast<std::int32_t>(word(head.data() + place, is_big_endian));
-    return number < 0 ? 0 : static_cast<std::uint64_t>(number);
-  }
-  static float float_at(const char* bytes, bool is_big_endian) {
-    return std::bit_cast<float>(word(bytes, is_big_endian));
+  static std::uint64_t count_at(const std::string& head, std::size_t place, std::endian order) {
+    return static_cast<std::uint64_t>(
+        std::max(number_from<std::int32_t>(head.data() + place, order), 0));
   }
 
   Result<CacheLayout> read_pc2() const {
@@ -84,14 +71,15 @@ class LayoutReader {
     if (!text) return fail(text.error());
     if (std::string_view(*text).substr(0, magic.size()) != magic)
       return refuse("it is no .pc2: it does not begin with POINTCACHE2");
-    const auto version = static_cast<std::int32_t>(word(text->data() + 12, false));
+    const auto version = number_from<std::int32_t>(text->data() + 12);
     if (version != 1)
       return refuse(fmt::format("its version is {}, but only version 1 is read", version));
     CacheLayout layout{.clock = CacheLayout::Clock::Frames, .begin = size};
-    if (auto set = set_counts(count_at(*text, 28, false), count_at(*text, 16, false), layout); !set)
+    constexpr std::endian order = std::endian::little;
+    if (auto set = set_counts(count_at(*text, 28, order), count_at(*text, 16, order), layout); !set)
       return fail(set.error());
-    layout.start = float_at(text->data() + 20, false);
-    layout.step = float_at(text->data() + 24, false);
+    layout.start = number_from<float>(text->data() + 20);
+    layout.step = number_from<float>(text->data() + 24);
     if (!std::isfinite(layout.start))
       return refuse(fmt::format("its start frame is {}, but must be finite", layout.start));
     if (!(std::isfinite(layout.step) && layout.step > 0))
@@ -105,8 +93,9 @@ class LayoutReader {
   Result<CacheLayout> read_mdd() const {
     const auto text = head(8);
     if (!text) return fail(text.error());
-    CacheLayout layout{.clock = CacheLayout::Clock::Seconds, .is_big_endian = true};
-    if (auto set = set_counts(count_at(*text, 0, true), count_at(*text, 4, true), layout); !set)
+    constexpr std::endian order = std::endian::big;
+    CacheLayout layout{.clock = CacheLayout::Clock::Seconds, .byte_order = order};
+    if (auto set = set_counts(count_at(*text, 0, order), count_at(*text, 4, order), layout); !set)
       return fail(set.error());
     // The counts are checked before any memory is taken for the times.
     const auto samples = static_cast<std::uint64_t>(layout.sample_count);
@@ -116,7 +105,7 @@ class LayoutReader {
     if (auto read = bytes_.read(8, times.data(), times.size()); !read) return fail(read.error());
     layout.seconds.resize(static_cast<std::size_t>(samples));
     for (std::size_t k = 0; k < layout.seconds.size(); ++k) {
-      layout.seconds[k] = float_at(times.data() + 4 * k, true);
+      layout.seconds[k] = number_from<float>(times.data() + 4 * k, order);
     }
     return layout;
   }
@@ -127,9 +116,8 @@ class LayoutReader {
     if (!first) return fail(first.error());
     auto header = read_npy_header(*first, bytes_.size());
     if (!header) return refuse(header.error().message);
-    CacheLayout layout{.begin = header->begin,
-                       .is_double = header->is_double,
-                       .is_big_endian = header->is_big_endian};
+    CacheLayout layout{
+        .begin = header->begin, .is_double = header->is_double, .byte_order = header->byte_order};
     const std::vector<std::uint64_t>& shape = header->shape;
     if (shape.size() != 3 || shape[2] != 3)
       return refuse(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -35,7 +36,7 @@ struct CacheLayout {
 
   std::uint64_t begin = 0;  ///< of the first number [bytes]
   bool is_double = false;   ///< the numbers, three a vertex, vertex by vertex, sample by sample
-  bool is_big_endian = false;
+  std::endian byte_order = std::endian::little;
 
   std::size_t number_size() const { return is_double ? 8 : 4; }
   std::uint64_t sample_bytes() const {

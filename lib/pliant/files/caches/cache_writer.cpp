@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/atomic_file.hpp"
 #include "pliant/files/formats.hpp"
 #include "pliant/files/obj/obj_text.hpp"
@@ -17,22 +16,11 @@
 namespace pliant {
 namespace {
 
-// Appends the four bytes of an integer or of a float.
-template <std::endian order, class Number>
-void append(std::string& bytes, Number number) {
-  static_assert(sizeof(Number) == 4);
-  const auto bits = std::bit_cast<std::uint32_t>(number);
-  for (int k = 0; k < 4; ++k)
-    bytes += static_cast<char>(bits >> 8 * (order == std::endian::little ? k : 3 - k) & 0xff);
-}
-
 // Reverses the bytes of each number. Not as floats: some of the results are signalling NaNs.
 void swap_bytes(std::span<float> numbers) {
   for (float& number : numbers) {
-    std::uint32_t bits;
-    std::memcpy(&bits, &number, sizeof(bits));
-    bits = bits >> 24 | (bits >> 8 & 0xff00) | (bits << 8 & 0xff0000) | bits << 24;
-    std::memcpy(&number, &bits, sizeof(bits));
+    const std::span<char> bytes(reinterpret_cast<char*>(&number), sizeof(number));
+    std::reverse(bytes.begin(), bytes.end());
   }
 }
 
@@ -100,11 +88,11 @@ Result<std::unique_ptr<SurfaceWriter>> make_writer(const SurfacePlan& plan,
 Result<std::unique_ptr<SurfaceWriter>> make_pc2_writer(const SurfacePlan& plan) {
   constexpr std::endian order = std::endian::little;
   std::string header("POINTCACHE2\0", 12);
-  append<order>(header, std::int32_t{1});
-  append<order>(header, std::int32_t{plan.mesh->vertex_count()});
-  append<order>(header, static_cast<float>(plan.first_frame));
-  append<order>(header, 1.0f);
-  append<order>(header, std::int32_t{plan.frame_count()});
+  append_number(header, std::int32_t{1}, order);
+  append_number(header, std::int32_t{plan.mesh->vertex_count()}, order);
+  append_number(header, static_cast<float>(plan.first_frame), order);
+  append_number(header, 1.0f, order);
+  append_number(header, std::int32_t{plan.frame_count()}, order);
   return make_writer<order>(plan, header);
 }
 
@@ -112,10 +100,10 @@ Result<std::unique_ptr<SurfaceWriter>> make_mdd_writer(const SurfacePlan& plan) 
   if (auto last = to_single_seconds(plan.frame_count(), plan.fps); !last) return fail(last.error());
   constexpr std::endian order = std::endian::big;
   std::string header;
-  append<order>(header, std::int32_t{plan.frame_count()});
-  append<order>(header, std::int32_t{plan.mesh->vertex_count()});
+  append_number(header, std::int32_t{plan.frame_count()}, order);
+  append_number(header, std::int32_t{plan.mesh->vertex_count()}, order);
   for (int k = 0; k < plan.frame_count(); ++k)
-    append<order>(header, static_cast<float>(k / plan.fps));
+    append_number(header, static_cast<float>(k / plan.fps), order);
   return make_writer<order>(plan, header);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/files/open_file.hpp"
 
@@ -62,28 +62,14 @@ class CacheInMemory final : public CacheBytes {
   std::string bytes_;
 };
 
-template <class Bits>
-Bits swapped(Bits bits) {
-  Bits other = 0;
-  for (std::size_t k = 0; k < sizeof(Bits); ++k) {
-    other = static_cast<Bits>(other << 8 | (bits >> 8 * k & 0xff));
-  }
-  return other;
-}
-
 // Some vertices' numbers in the file as rows of the field.
-template <class Number, class Bits>
-void put_rows(std::span<const char> bytes, bool is_swapped, Eigen::Index first, Field& field) {
+template <class Number>
+void put_rows(std::span<const char> bytes, std::endian order, Eigen::Index first, Field& field) {
   const auto count = static_cast<Eigen::Index>(bytes.size() / (3 * sizeof(Number)));
   const char* from = bytes.data();
   for (Eigen::Index row = first; row < first + count; ++row) {
-    for (int component = 0; component < 3; ++component) {
-      Bits bits;
-      std::memcpy(&bits, from, sizeof(bits));
-      if (is_swapped) bits = swapped(bits);
-      field(row, component) = std::bit_cast<Number>(bits);
-      from += sizeof(bits);
-    }
+    for (int component = 0; component < 3; ++component, from += sizeof(Number))
+      field(row, component) = number_from<Number>(from, order);
   }
 }
 
@@ -148,7 +134,6 @@ Result<Field> PointCache::read(int sample, Field reuse) const {
   PLIANT_EXPECTS(sample >= 0 && sample < sample_count());
   constexpr Eigen::Index most_rows = 4096;
   const std::size_t row_bytes = 3 * layout_.number_size();
-  const bool is_swapped = layout_.is_big_endian != (std::endian::native == std::endian::big);
   alignas(8) std::array<char, 3 * sizeof(double) * most_rows> room;
   reuse.resize(vertex_count(), 3);
   std::uint64_t offset =
@@ -159,9 +144,9 @@ Result<Field> PointCache::read(int sample, Field reuse) const {
     if (auto read = bytes_->read(offset, bytes.data(), bytes.size()); !read)
       return fail(read.error());
     if (layout_.is_double) {
-      put_rows<double, std::uint64_t>(bytes, is_swapped, row, reuse);
+      put_rows<double>(bytes, layout_.byte_order, row, reuse);
     } else {
-      put_rows<float, std::uint32_t>(bytes, is_swapped, row, reuse);
+      put_rows<float>(bytes, layout_.byte_order, row, reuse);
     }
     offset += bytes.size();
   }

@@ -1,7 +1,7 @@
 #include "pliant/files/gltf/gltf_accessor.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/file_object.hpp"
 
 namespace pliant::gltf {
@@ -46,34 +47,26 @@ bool is_index(std::uint64_t component) {
   return kind == Component::UInt8 || kind == Component::UInt16 || kind == Component::UInt32;
 }
 
-// Requires: that many bytes at `at`. Little-endian.
-std::uint32_t bits_at(const char* at, std::size_t size) {
-  std::uint32_t bits = 0;
-  for (std::size_t k = 0; k < size; ++k)
-    bits |= std::uint32_t{static_cast<unsigned char>(at[k])} << 8 * k;
-  return bits;
-}
-
 // Fraction of the largest value, at least -1: glTF 2.0, 3.11 (animations) and
 // KHR_mesh_quantization.
 double number_at(const char* at, std::uint64_t component, bool is_normalized) {
-  const std::uint32_t bits = bits_at(at, size_of(component));
-  const auto share = [&](double number, double largest) {
+  const auto read = [&]<class Number>(Number largest) {
+    const double number = number_from<Number>(at);
     return is_normalized ? std::max(number / largest, -1.0) : number;
   };
   switch (static_cast<Component>(component)) {
     case Component::Int8:
-      return share(static_cast<std::int8_t>(bits), 127);
+      return read(std::numeric_limits<std::int8_t>::max());
     case Component::UInt8:
-      return share(bits, 255);
+      return read(std::numeric_limits<std::uint8_t>::max());
     case Component::Int16:
-      return share(static_cast<std::int16_t>(bits), 32767);
+      return read(std::numeric_limits<std::int16_t>::max());
     case Component::UInt16:
-      return share(bits, 65535);
+      return read(std::numeric_limits<std::uint16_t>::max());
     case Component::UInt32:
-      return bits;
+      return number_from<std::uint32_t>(at);
     case Component::Float32:
-      return std::bit_cast<float>(bits);
+      return number_from<float>(at);
   }
   return 0;
 }
@@ -211,7 +204,7 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
   std::uint64_t least = 0;
   for (std::size_t k = 0; k < sparse.count; ++k) {
     if (poll.after(parts_of_element)) return interrupted();
-    const std::uint64_t index = bits_at(indices->bytes.data() + k * indices->stride, index_size);
+    const std::uint64_t index = bits_from(indices->bytes.data() + k * indices->stride, index_size);
     if (index < least || index >= accessor.count) {
       return read.broken(fmt::format(
           "has the sparse index {}, but must have one from {} to {} after those before it", index,

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
+
 namespace pliant::gltf {
 namespace {
 
@@ -14,10 +16,7 @@ constexpr std::uint64_t json_chunk = 0x4E4F534A, binary_chunk = 0x004E4942;
 
 // Requires: four bytes at `at`.
 std::uint64_t number_at(std::string_view bytes, std::size_t at) {
-  std::uint64_t number = 0;
-  for (std::size_t k = 0; k < 4; ++k)
-    number |= std::uint64_t{static_cast<unsigned char>(bytes[at + k])} << 8 * k;
-  return number;
+  return number_from<std::uint32_t>(bytes.data() + at);
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/hash_stream.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/read_file.hpp"
@@ -88,9 +88,7 @@ std::optional<std::string> json_of(const fs::path& file) {
     const bool is_first = text.empty();
     text += piece;
     if (is_first && text.size() >= head && text.starts_with("glTF")) {
-      std::uint32_t length = 0;
-      std::memcpy(&length, text.data() + 12, sizeof length);
-      end = head + length;
+      end = head + number_from<std::uint32_t>(text.data() + 12);
     }
     return text.size() <= end;
   });

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/raw_bytes.hpp"
 
 namespace pliant {
@@ -53,8 +54,10 @@ PackedIndices packed(std::span<const std::uint32_t> indices) {
   const int size = largest <= 0xff ? 1 : largest <= 0xffff ? 2 : 4;
   PackedIndices result{size == 1 ? unsigned_byte : size == 2 ? unsigned_short : unsigned_int, {}};
   result.bytes.reserve(indices.size() * static_cast<std::size_t>(size));
-  for (const std::uint32_t index : indices)
-    for (int k = 0; k < size; ++k) result.bytes += static_cast<char>(index >> 8 * k & 0xff);
+  for (const std::uint32_t index : indices) {
+    append_number(result.bytes, index);
+    result.bytes.resize(result.bytes.size() - sizeof(index) + static_cast<std::size_t>(size));
+  }
   return result;
 }
 

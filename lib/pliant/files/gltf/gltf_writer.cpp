@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,6 +14,7 @@
 #include "pliant/files/atomic_file.hpp"
 #include "pliant/files/byte_sink.hpp"
 #include "pliant/files/formats.hpp"
+#include "pliant/files/gltf/glb.hpp"
 #include "pliant/files/gltf/gltf_numbers.hpp"
 #include "pliant/files/gltf/gltf_spool.hpp"
 #include "pliant/files/gltf/gltf_surface.hpp"
@@ -28,8 +28,6 @@ namespace {
 
 using Json = GltfBuffer::Json;
 
-constexpr std::uint64_t most_glb_bytes = std::numeric_limits<std::uint32_t>::max();
-
 // A file name as a URI reference in JSON: RFC 3986 requires all other characters to be escaped.
 std::string to_uri(const std::string& name) {
   std::string uri;
@@ -39,10 +37,6 @@ std::string to_uri(const std::string& name) {
     uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return uri;
-}
-
-void append_number(std::string& bytes, std::uint32_t number) {
-  for (int k = 0; k < 4; ++k) bytes += static_cast<char>(number >> 8 * k & 0xff);
 }
 
 // The materials named by faces, and one without a name for faces without one. Sheets are visible
@@ -201,21 +195,12 @@ class GltfWriter final : public AnimationWriter {
     return committed;
   }
 
-  // glTF 2.0, 4.4: a header, a chunk of JSON padded with spaces, a chunk of numbers.
-  Result<void> write_glb(std::string text) {
-    text.append((4 - text.size() % 4) % 4, ' ');
-    const std::uint64_t length = 12 + 8 + text.size() + 8 + spool_->size();
-    if (length > most_glb_bytes) return too_large();
-    std::string head = "glTF";
-    append_number(head, 2);
-    append_number(head, static_cast<std::uint32_t>(length));
-    append_number(head, static_cast<std::uint32_t>(text.size()));
-    head += "JSON" + text;
-    append_number(head, static_cast<std::uint32_t>(spool_->size()));
-    head.append("BIN\0", 4);
+  Result<void> write_glb(const std::string& text) {
+    const auto head = glb_head(text, spool_->size());
+    if (!head) return too_large();
     auto file = AtomicFile::create(file_);
     if (!file) return fail(file.error());
-    if (auto written = file->write(head); !written) return written;
+    if (auto written = file->write(*head); !written) return written;
     if (auto copied = spool_->copy_to(*file, should_stop_); !copied) return copied;
     return file->commit();
   }

@@ -1,25 +1,20 @@
 #include "pliant/files/npy/npy_grid.hpp"
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/npy/npy_header.hpp"
 
 namespace pliant {
 namespace {
 
-double number_in_npy(std::string_view bytes, const NpyHeader& header) {
-  std::uint64_t bits = 0;
-  for (std::size_t k = 0; k < bytes.size(); ++k) {
-    const std::size_t place = header.is_big_endian ? k : bytes.size() - 1 - k;
-    bits = bits << 8 | static_cast<unsigned char>(bytes[place]);
-  }
-  if (header.is_double) return std::bit_cast<double>(bits);
-  return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
+double number_in_npy(const char* bytes, const NpyHeader& header) {
+  return header.is_double ? number_from<double>(bytes, header.byte_order)
+                          : number_from<float>(bytes, header.byte_order);
 }
 
 }  // namespace
@@ -45,7 +40,7 @@ Result<std::vector<double>> parse_npy_grid(std::string_view bytes, const std::st
   StopPoll poll(should_stop);
   for (std::size_t k = 0; k < count; ++k) {
     if (poll.after(parts_of_number)) return interrupted();
-    values[k] = number_in_npy(numbers.substr(k * size, size), *header);
+    values[k] = number_in_npy(numbers.data() + k * size, *header);
     if (!std::isfinite(values[k]))
       return refuse(fmt::format("the number in row {}, column {} is {}, which is not finite",
                                 k / width, k % width, values[k]));

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/text.hpp"
 
 namespace pliant {
@@ -79,7 +80,7 @@ Result<NpyHeader> header_of_literal(std::string_view literal, std::uint64_t begi
                     part_of_head(type)));
   NpyHeader header{.shape_text = part_of_head(*shape),
                    .is_double = type[2] == '8',
-                   .is_big_endian = type[0] == '>',
+                   .byte_order = type[0] == '>' ? std::endian::big : std::endian::little,
                    .begin = begin};
   if (trim(*order, " ") == "True")
     return refuse_head(
@@ -102,17 +103,14 @@ Result<NpyHeader> read_npy_header(std::string_view bytes, std::uint64_t size) {
   if (bytes.size() < 10) return too_short(10);
   if (bytes.substr(0, magic.size()) != magic)
     return refuse_head("it is no .npy: it does not begin with \\x93NUMPY");
-  const auto byte = [&](std::size_t place) {
-    return static_cast<std::size_t>(static_cast<unsigned char>(bytes[place]));
-  };
-  const std::size_t version = byte(6);
+  const int version = static_cast<unsigned char>(bytes[6]);
   if (version < 1 || version > 3)
     return refuse_head(
         fmt::format("its version is {}, but only versions 1 to 3 are read", version));
   const std::size_t begin = version == 1 ? 10 : 12;
   if (bytes.size() < begin) return too_short(begin);
-  std::size_t length = byte(8) | byte(9) << 8;
-  if (version > 1) length |= byte(10) << 16 | byte(11) << 24;
+  const std::size_t length = version == 1 ? number_from<std::uint16_t>(bytes.data() + 8)
+                                          : number_from<std::uint32_t>(bytes.data() + 8);
   if (length > longest)
     return refuse_head(
         fmt::format("its head has {} bytes, but at most {} are read", length, longest));

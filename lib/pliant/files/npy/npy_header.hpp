@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -15,7 +16,7 @@ struct NpyHeader {
   std::vector<std::uint64_t> shape = {};  ///< counts, the slowest first
   std::string shape_text = {};            ///< as written, shortened for messages
   bool is_double = false;                 ///< else single precision
-  bool is_big_endian = false;
+  std::endian byte_order = std::endian::little;
   std::uint64_t begin = 0;  ///< of the first number [bytes]
 
   std::size_t number_size() const { return is_double ? 8 : 4; }

@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/files/atomic_file.hpp"
 #include "pliant/files/formats.hpp"
@@ -22,8 +24,7 @@ std::string npy_header(int frames, int vertices) {
   const std::size_t unpadded = prefix + literal.size() + 1;
   literal.append((64 - unpadded % 64) % 64, ' ').push_back('\n');
   std::string header("\x93NUMPY\x01\x00", 8);
-  header.push_back(static_cast<char>(literal.size() & 0xff));
-  header.push_back(static_cast<char>(literal.size() >> 8));
+  append_number(header, static_cast<std::uint16_t>(literal.size()));
   return header + literal;
 }
 

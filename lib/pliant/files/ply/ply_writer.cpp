@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/formats.hpp"
 #include "pliant/files/sequence.hpp"
 #include "pliant/files/written_mesh.hpp"
@@ -47,11 +48,6 @@ std::vector<int> vertex_normals(const Mesh& mesh) {
   }
   return std::find(normals.begin(), normals.end(), -1) == normals.end() ? normals
                                                                         : std::vector<int>();
-}
-
-template <class Number>
-void append(std::string& bytes, Number number) {  // on a little-endian machine
-  bytes.append(reinterpret_cast<const char*>(&number), sizeof(number));
 }
 
 // Whether a list of a face, with `numbers` entries for each of its corners, is longer than 255.
@@ -137,9 +133,9 @@ class PlyWriter final : public SequenceWriter {
     std::string faces;
     const auto append_count = [&](int count) {
       if (has_long_counts_) {
-        append(faces, static_cast<std::uint32_t>(count));
+        append_number(faces, static_cast<std::uint32_t>(count));
       } else {
-        append(faces, static_cast<std::uint8_t>(count));
+        append_number(faces, static_cast<std::uint8_t>(count));
       }
     };
     std::size_t first = 0;
@@ -148,13 +144,13 @@ class PlyWriter final : public SequenceWriter {
       if (poll.after(16 * static_cast<std::size_t>(size))) break;
       append_count(size);
       for (std::size_t k = first; k < end; ++k)
-        append(faces, static_cast<std::int32_t>(mesh.corner_vertices[k]));
+        append_number(faces, static_cast<std::int32_t>(mesh.corner_vertices[k]));
       if (has_corner_uvs_) append_count(2 * size);
       for (std::size_t k = first; k < end && has_corner_uvs_; ++k) {
         const int uv = mesh.corner_uvs[k];
         for (int n = 0; n < 2; ++n) {
-          append(faces,
-                 uv < 0 ? 0.0f : static_cast<float>(mesh.uvs[static_cast<std::size_t>(uv)][n]));
+          append_number(
+              faces, uv < 0 ? 0.0f : static_cast<float>(mesh.uvs[static_cast<std::size_t>(uv)][n]));
         }
       }
       first = end;

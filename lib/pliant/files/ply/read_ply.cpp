@@ -5,7 +5,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/file_object.hpp"
 #include "pliant/files/ply/ply_header.hpp"
@@ -75,11 +75,9 @@ class Numbers {
     const std::size_t size = size_of(type);
     has_run_out_ = bytes_.size() - at_ < size;
     if (has_run_out_) return std::nullopt;
-    std::uint64_t bits = 0;
-    for (std::size_t k = 0; k < size; ++k) {
-      const std::size_t place = encoding_ == Encoding::LittleEndian ? k : size - 1 - k;
-      bits |= std::uint64_t{static_cast<unsigned char>(bytes_[at_ + k])} << 8 * place;
-    }
+    const bool is_little = encoding_ == Encoding::LittleEndian;
+    const std::uint64_t bits =
+        bits_from(bytes_.data() + at_, size, is_little ? std::endian::little : std::endian::big);
     at_ += size;
     const double number = to_double(bits, type);
     return std::isfinite(number) ? std::optional(number) : std::nullopt;

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include "pliant/core/byte_order.hpp"
 #include "pliant/files/file_object.hpp"
 
 namespace pliant {
@@ -30,20 +31,14 @@ struct PngHead {
   }
 };
 
-std::uint32_t big_endian(std::string_view bytes, std::size_t place) {
-  std::uint32_t number = 0;
-  for (std::size_t k = 0; k < 4; ++k)
-    number = number << 8 | static_cast<unsigned char>(bytes[place + k]);
-  return number;
-}
-
 Result<PngHead> read_head(std::string_view bytes) {
   constexpr std::string_view begin("\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR", 16);
   constexpr std::size_t size = 33;  // with the checksum
   if (bytes.substr(0, begin.size()) != begin)
     return invalid("the file is no PNG: it does not begin as one");
   if (bytes.size() < size) return invalid("the file is truncated: it ends within its head");
-  const std::uint32_t width = big_endian(bytes, 16), height = big_endian(bytes, 20);
+  const auto width = number_from<std::uint32_t>(bytes.data() + 16, std::endian::big);
+  const auto height = number_from<std::uint32_t>(bytes.data() + 20, std::endian::big);
   for (const std::uint32_t side : {width, height}) {
     if (side < 1 || side > longest_picture_side)
       return invalid(fmt::format("the picture has {} x {} pixels, but a side must have 1 to {}",
