@@ -9,7 +9,6 @@ namespace pliant {
 
 double exp_of(double x) { return Sleef_cinz_expd1_u10purec(x); }
 double log_of(double x) { return Sleef_cinz_logd1_u10purec(x); }
-double pow_of(double x, double y) { return Sleef_cinz_powd1_u10purec(x, y); }
 double sin_of(double radians) { return Sleef_cinz_sind1_u10purec(radians); }
 double cos_of(double radians) { return Sleef_cinz_cosd1_u10purec(radians); }
 double asin_of(double x) { return Sleef_cinz_asind1_u10purec(x); }

@@ -7,12 +7,11 @@ namespace pliant {
 // functions, which never use fused multiply-add: bit-identical on every machine of an architecture.
 // Error at most 1 ulp. sqrt is exact everywhere and needs no wrapper.
 
-double exp_of(double x);            ///< eˣ
-double log_of(double x);            ///< natural logarithm; Requires: x > 0
-double pow_of(double x, double y);  ///< xʸ
-double sin_of(double radians);      ///< Requires: finite
-double cos_of(double radians);      ///< Requires: finite
-double asin_of(double x);           ///< [rad]; Requires: |x| <= 1
+double exp_of(double x);        ///< eˣ
+double log_of(double x);        ///< natural logarithm; Requires: x > 0
+double sin_of(double radians);  ///< Requires: finite
+double cos_of(double radians);  ///< Requires: finite
+double asin_of(double x);       ///< [rad]; Requires: |x| <= 1
 
 /// Sine and cosine of one angle.
 struct SineCosine {

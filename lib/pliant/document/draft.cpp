@@ -26,14 +26,6 @@ std::string line_end_at(std::string_view text, std::size_t feed) {
   return feed > 0 && text[feed - 1] == '\r' ? "\r\n" : "\n";
 }
 
-/// The line ends of a text, without anything else.
-std::string line_ends_of(std::string_view text) {
-  std::string ends;
-  for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
-    ends += line_end_at(text, at);
-  return ends;
-}
-
 /// The blanks after the last line end.
 std::string last_line_of(std::string_view text) {
   return std::string(text.substr(text.rfind('\n') + 1));
@@ -114,7 +106,7 @@ void Draft::set(Element element, std::string_view attribute, std::string_view va
   const bool has_lines = given.size() > 1 &&
                          std::all_of(given.begin() + 1, given.end(),
                                      [&](const auto& one) { return has_line_end(blanks_of(one)); });
-  if (has_lines && !keeps_lines_) separator = blanks_of(given.back());
+  if (has_lines) separator = blanks_of(given.back());
   insert(
       given.empty() ? place(element).name.end : given.back().whole().end,
       fmt::format("{}{}={}{}{}", separator, attribute, quote, xml::encoded(value, quote), quote));
@@ -123,8 +115,7 @@ void Draft::set(Element element, std::string_view attribute, std::string_view va
 void Draft::remove_attribute(Element element, std::string_view attribute) {
   const AttributePlace* const given = this->attribute(element, attribute);
   if (!given) return;
-  const TextRange range{blanks_begin(given->name.begin), given->whole().end};
-  replace(range, keeps_lines_ ? line_ends_of(range.of(text_)) : "");
+  replace({blanks_begin(given->name.begin), given->whole().end}, "");
 }
 
 void Draft::remove(Element element) {
@@ -135,7 +126,7 @@ void Draft::remove(Element element) {
     range = {place(element).whole().begin,
              static_cast<std::uint32_t>(text_.find_first_not_of(space, end))};
   }
-  replace(range, keeps_lines_ ? line_ends_of(range.of(text_)) : "");
+  replace(range, "");
 }
 
 void Draft::replace_element(Element element, const xml::ElementText& by) {
@@ -147,11 +138,11 @@ void Draft::replace_element(Element element, const xml::ElementText& by) {
 void Draft::set_comment(Element element, std::string_view lines) {
   const auto margin = margin_of(element);
   const std::uint32_t begin = place(element).whole().begin;
-  const std::string line_end = keeps_lines_ ? "" : line_end_near(begin);
+  const std::string line_end = line_end_near(begin);
   std::string comment = "<!-- ";
   for (const char c : lines) {
     if (c == '\n')
-      comment += margin && !keeps_lines_ ? fmt::format("{}{}     ", line_end, *margin) : " ";
+      comment += margin ? fmt::format("{}{}     ", line_end, *margin) : " ";
     else
       comment += c;
   }
@@ -165,7 +156,7 @@ void Draft::set_comment(Element element, std::string_view lines) {
     const bool is_first = last == std::string_view::npos || before[last] == '\n';
     if (is_first || !margin) return replace({old, end}, std::move(comment));
   }
-  insert(begin, comment + (margin && !keeps_lines_ ? line_end + *margin : " "));
+  insert(begin, comment + (margin ? line_end + *margin : " "));
 }
 
 std::uint32_t Draft::blanks_begin(std::uint32_t at) const {
@@ -236,7 +227,6 @@ Draft::Surroundings Draft::inside(const Place& place) const {
     result.is_inline = !margin || !has_line_end(text_);
     result.margin = margin.value_or("") + indent();
   }
-  result.is_inline = result.is_inline || keeps_lines_;
   if (!result.is_inline) {
     result.layout.line_end =
         line_end_near(neighbour ? this->place(*neighbour).whole().begin : begin);
@@ -245,7 +235,7 @@ Draft::Surroundings Draft::inside(const Place& place) const {
     result.layout.line_end.clear();
     result.layout.indent.clear();
     result.layout.columns = std::numeric_limits<std::size_t>::max();
-    result.margin = neighbour && !keeps_lines_ ? blanks_before(*neighbour) : "";
+    result.margin = neighbour ? blanks_before(*neighbour) : "";
   }
   // The quotes of the nearest attribute.
   for (const Element near : {neighbour.value_or(place.parent), place.parent, root}) {

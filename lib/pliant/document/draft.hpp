@@ -118,10 +118,6 @@ class Draft {
   /// Makes the noted changes. Errors: those of `markup_of`.
   Result<void> commit();
 
-  /// Keeps the lines: elements are inserted without line ends, and line ends of what is removed
-  /// stay. So problems of the text have the lines of the first one.
-  void keep_lines() { keeps_lines_ = true; }
-
   /// All changes since it was made.
   std::vector<EditBatch> take_batches() { return std::move(batches_); }
 
@@ -144,7 +140,6 @@ class Draft {
   EditBatch noted_;
   std::vector<EditBatch> batches_;
   std::optional<std::string> indent_ = {};  // null: that of the text
-  bool keeps_lines_ = false;
 };
 
 }  // namespace pliant::edit

@@ -136,7 +136,6 @@ class Editor {
   Result<void> set_curve(const Spot& spot, const CurveKeys<D>& keys);
 
   // Objects.
-  Result<void> forget_target(const std::string& name, const std::vector<std::string>& deleted);
   Result<Element> force(std::string_view name) const;
   Result<void> move_into(const std::string& force, const std::string& group);
   Result<void> move_behind(const std::string& force, const std::string& other);

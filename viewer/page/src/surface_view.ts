@@ -45,7 +45,6 @@ export class SurfaceView {
   private readonly edgeCounts: Uint8Array;
   private readonly size: number;
   private plain = new THREE.Color();
-  private style: Style = "shaded";
 
   constructor(
     readonly surface: BakedSurface,
@@ -129,7 +128,6 @@ export class SurfaceView {
   }
 
   dress(style: Style, palette: Palette): void {
-    this.style = style;
     this.plain.set(palette.surface);
     this.mesh.material.colorWrite = style !== "wireframe";
     this.mesh.material.depthWrite = style !== "wireframe";
@@ -139,10 +137,6 @@ export class SurfaceView {
     material.color.set(style === "wireframe" ? 0xffffff : palette.mesh);
     material.opacity = style === "wireframe" ? 0.9 : 0.28;
     material.needsUpdate = true;
-  }
-
-  get isWireframe(): boolean {
-    return this.style === "wireframe";
   }
 
   /** A vertex at the frame shown, world space. */

@@ -19,8 +19,6 @@ class GltfBuffer {
   using Json = nlohmann::ordered_json;
   using Sink = std::function<Result<void>(std::string_view)>;
 
-  static constexpr std::size_t no_accessor = static_cast<std::size_t>(-1);
-
   enum class Bounds { None, Written };
 
   explicit GltfBuffer(Sink sink, StopRequest should_stop = {})
