@@ -12,47 +12,44 @@
 #include <unistd.h>
 
 #include "pliant/files/open_file.hpp"
-
 namespace pliant {
 
 OpenFolder::OpenFolder(const std::filesystem::path& file) {
   const std::filesystem::path parent = file.parent_path();
   const char* const name = parent.empty() ? "." : parent.c_str();
-  descriptor_ = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  is_readable_ = descriptor_ >= 0;
+  descriptor_ = OpenDescriptor(open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  is_readable_ = descriptor_.is_open();
   // A folder that is writable but not readable suffices for everything except a flush.
-  if (!is_readable_ && errno == EACCES) descriptor_ = open(name, O_PATH | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ < 0) error_ = errno;
-}
-
-OpenFolder::~OpenFolder() {
-  if (descriptor_ >= 0) close(descriptor_);
+  if (!is_readable_ && errno == EACCES)
+    descriptor_ = OpenDescriptor(open(name, O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!descriptor_.is_open()) error_ = errno;
 }
 
 int OpenFolder::rename(const std::string& from, const std::string& to) const {
-  return renameat(descriptor_, from.c_str(), descriptor_, to.c_str()) == 0 ? 0 : errno;
+  return renameat(descriptor(), from.c_str(), descriptor(), to.c_str()) == 0 ? 0 : errno;
 }
 
 int OpenFolder::rename_new(const std::string& from, const std::string& to) const {
   // By a link, which network file systems have too; others have no links.
-  if (linkat(descriptor_, from.c_str(), descriptor_, to.c_str(), 0) == 0) {
+  if (linkat(descriptor(), from.c_str(), descriptor(), to.c_str(), 0) == 0) {
     remove(from);
     return 0;
   }
   if (errno == EEXIST) return EEXIST;
-  return renameat2(descriptor_, from.c_str(), descriptor_, to.c_str(), RENAME_NOREPLACE) == 0
+  return renameat2(descriptor(), from.c_str(), descriptor(), to.c_str(), RENAME_NOREPLACE) == 0
              ? 0
              : errno;
 }
 
 int OpenFolder::exchange(const std::string& one, const std::string& other) const {
-  const int done = renameat2(descriptor_, one.c_str(), descriptor_, other.c_str(), RENAME_EXCHANGE);
+  const int done =
+      renameat2(descriptor(), one.c_str(), descriptor(), other.c_str(), RENAME_EXCHANGE);
   return done == 0 ? 0 : errno;
 }
 
 bool OpenFolder::has(const std::string& name, std::string_view bytes) const {
   const OpenDescriptor file(
-      openat(descriptor_, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+      openat(descriptor(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
   if (!file.is_open() || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode))
     return false;
@@ -69,20 +66,21 @@ bool OpenFolder::has(const std::string& name, std::string_view bytes) const {
 
 bool OpenFolder::is(const std::string& name, int descriptor) const {
   struct stat named = {}, open = {};
-  return fstatat(descriptor_, name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+  return fstatat(descriptor_.number(), name.c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 &&
          fstat(descriptor, &open) == 0 && named.st_dev == open.st_dev &&
          named.st_ino == open.st_ino;
 }
 
-void OpenFolder::remove(const std::string& name) const { unlinkat(descriptor_, name.c_str(), 0); }
+void OpenFolder::remove(const std::string& name) const { unlinkat(descriptor(), name.c_str(), 0); }
 
-int OpenFolder::flush() const { return is_readable_ ? flush_descriptor(descriptor_) : 0; }
+int OpenFolder::flush() const { return is_readable_ ? flush_descriptor(descriptor()) : 0; }
 
 void OpenFolder::lock() const {
   using namespace std::chrono_literals;
   // Limited, since the process with the lock may hang.
   for (auto waited = 0ms; waited < 10s; waited += 10ms) {
-    if (!is_readable_ || flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    if (!is_readable_ || flock(descriptor(), LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK)
+      return;
     std::this_thread::sleep_for(10ms);
   }
 }

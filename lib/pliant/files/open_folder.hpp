@@ -3,7 +3,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
-#include <utility>
+
+#include "pliant/files/open_file.hpp"
 
 namespace pliant {
 
@@ -13,15 +14,9 @@ class OpenFolder {
  public:
   /// The folder of `file`; `error` is the errno if it cannot be opened, 0: it is open.
   explicit OpenFolder(const std::filesystem::path& file);
-  OpenFolder(OpenFolder&& other) noexcept
-      : descriptor_(std::exchange(other.descriptor_, -1)),
-        error_(other.error_),
-        is_readable_(other.is_readable_) {}
-  OpenFolder& operator=(OpenFolder&&) = delete;
-  ~OpenFolder();
 
   int error() const { return error_; }
-  int descriptor() const { return descriptor_; }
+  int descriptor() const { return descriptor_.number(); }
 
   int rename(const std::string& from, const std::string& to) const;
   /// The same, but EEXIST if there is a file with the new name.
@@ -44,7 +39,7 @@ class OpenFolder {
   void lock() const;
 
  private:
-  int descriptor_ = -1;
+  OpenDescriptor descriptor_;
   int error_ = 0;
   bool is_readable_ = false;
 };

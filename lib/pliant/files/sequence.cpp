@@ -67,12 +67,8 @@ class FileBytes {
   explicit FileBytes(const std::filesystem::path& file)
       : descriptor_(open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC)) {
     struct stat status = {};
-    is_open_ = descriptor_ >= 0 && fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode);
-  }
-  FileBytes(const FileBytes&) = delete;
-  FileBytes& operator=(const FileBytes&) = delete;
-  ~FileBytes() {
-    if (descriptor_ >= 0) close(descriptor_);
+    is_open_ = descriptor_.is_open() && fstat(descriptor_.number(), &status) == 0 &&
+               S_ISREG(status.st_mode);
   }
 
   bool is_open() const { return is_open_; }
@@ -87,14 +83,14 @@ class FileBytes {
     return !fill();
   }
 
-  bool flush() const { return flush_descriptor(descriptor_) == 0; }
+  bool flush() const { return flush_descriptor(descriptor_.number()) == 0; }
 
  private:
   // Fills `there_` from the file; false if the file is too short or cannot be read.
   bool fill() {
     std::size_t done = 0;
     while (done < there_.size()) {
-      const ssize_t count = read(descriptor_, there_.data() + done, there_.size() - done);
+      const ssize_t count = read(descriptor_.number(), there_.data() + done, there_.size() - done);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return false;
       done += static_cast<std::size_t>(count);
@@ -102,7 +98,7 @@ class FileBytes {
     return true;
   }
 
-  int descriptor_;
+  OpenDescriptor descriptor_;
   bool is_open_ = false;
   std::string there_;
 };

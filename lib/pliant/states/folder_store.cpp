@@ -18,6 +18,7 @@
 #include <unistd.h>
 
 #include "pliant/files/atomic_file.hpp"
+#include "pliant/files/open_file.hpp"
 
 namespace pliant {
 namespace {
@@ -30,20 +31,6 @@ constexpr std::int64_t second = 1'000'000'000;  // [ns]
 
 // A part of a file that has not been written to for so long was left by a killed process.
 constexpr std::int64_t abandoned_after = 600 * second;
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) close(number_);
-  }
-  int number() const { return number_; }
-
- private:
-  int number_;
-};
 
 std::int64_t now() {
   timespec time = {};
@@ -173,7 +160,7 @@ bool FolderStateStore::Folder::holds(const Hash& key) const {
 
 std::optional<std::string> FolderStateStore::Folder::read(const Hash& key, std::size_t most) const {
   // A link or a pipe of that name is not a file of this store, and must not block.
-  const Descriptor file(
+  const OpenDescriptor file(
       ::open(file_of(key).c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
   if (file.number() < 0 || fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode)) {

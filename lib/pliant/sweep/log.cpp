@@ -169,13 +169,8 @@ bool read_line(std::string_view text, LogLine& line) {
   return json && json->is_object() && LineContent(*json).read(line);
 }
 
-LogFile::LogFile(LogFile&& other) noexcept
-    : descriptor_(std::exchange(other.descriptor_, -1)), name_(std::move(other.name_)) {}
-
 LogFile::~LogFile() {
-  if (descriptor_ < 0) return;
-  fsync(descriptor_);
-  close(descriptor_);
+  if (descriptor_.is_open()) fsync(descriptor_.number());
 }
 
 Result<LogFile> LogFile::create(const fs::path& folder) {
@@ -196,7 +191,7 @@ Result<LogFile> LogFile::create(const fs::path& folder) {
 
 Result<void> LogFile::append(std::string_view line) {
   for (;;) {
-    const ssize_t count = write(descriptor_, line.data(), line.size());
+    const ssize_t count = write(descriptor_.number(), line.data(), line.size());
     if (count == static_cast<ssize_t>(line.size())) return {};
     if (count < 0 && errno == EINTR) continue;
     return cannot_write_log(name_, count < 0 ? errno : ENOSPC);

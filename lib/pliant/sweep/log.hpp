@@ -11,6 +11,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/files/open_file.hpp"
 #include "pliant/sweep/sweep.hpp"
 
 namespace pliant {
@@ -51,7 +52,7 @@ class LogFile {
   /// A file of its own in the folder, which is made if necessary. Errors: Unwritable.
   static Result<LogFile> create(const std::filesystem::path& folder);
 
-  LogFile(LogFile&& other) noexcept;
+  LogFile(LogFile&&) noexcept = default;
   LogFile& operator=(LogFile&&) = delete;
   ~LogFile();
 
@@ -61,7 +62,7 @@ class LogFile {
  private:
   LogFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
-  int descriptor_;
+  OpenDescriptor descriptor_;
   std::string name_;
 };
 
