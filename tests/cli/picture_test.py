@@ -76,7 +76,7 @@ def note():  # ahead of the picture, which ends us
 
 """
 
-RENDERS = importlib.util.find_spec("matplotlib") is not None
+RENDERS = importlib.util.find_spec("PIL") is not None
 
 
 def size_of(png):
@@ -152,7 +152,7 @@ class Picture(Command):
         self.assertEqual(some, list(range(10, 21)))
         self.assertEqual(self.job("--frame", "7", scene=scene)["frames"], [7])
 
-    @unittest.skipUnless(RENDERS, "script/render needs matplotlib")
+    @unittest.skipUnless(RENDERS, "script/render needs Pillow")
     def test_the_script_that_renders_has_the_same_rule_and_the_peak_of_the_bake(self):
         loader = importlib.machinery.SourceFileLoader("render", os.path.join(SOURCE, "script/render"))
         render = importlib.util.module_from_spec(importlib.util.spec_from_loader("render", loader))
@@ -172,7 +172,7 @@ class Picture(Command):
                                       cwd=self.folder, check=True, capture_output=True, text=True).stdout
                 self.assertIn(f"peak displacement {peak} from frame {first}, in frames {first} to {max(files)}\n", told)
 
-    @unittest.skipUnless(RENDERS, "script/render needs matplotlib")
+    @unittest.skipUnless(RENDERS, "script/render needs Pillow")
     def test_the_script_that_renders_says_which_files_there_are(self):
         scene = self.write("still.xml", SCENE.format(end=9).replace("3000", "0"))
         self.run_pliant("bake", scene, "-o", "a.obj", "--quiet")
