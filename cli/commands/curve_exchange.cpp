@@ -105,7 +105,7 @@ struct Import {
 };
 
 // The vector or the curve that a mapping takes.
-std::string title_of(const CurveMapping& mapping, const CurveIndex& curves) {
+std::string title_of_mapping(const CurveMapping& mapping, const CurveIndex& curves) {
   const auto found = curves.find(mapping.source);
   const bool is_one = !found.empty() && found.front()->name == mapping.source;
   return is_one && mapping.component >= 0 ? found.front()->group : mapping.source;
@@ -152,7 +152,7 @@ void turn_vectors(Import& imported, const CurveExchangeOptions& options, const S
     for (const Surface& surface : scene->surfaces) surfaces.try_emplace(surface.name, &surface);
   const CurveIndex curves(imported.file);
   for (const CurveMapping& mapping : imported.mappings) {
-    const std::string title = title_of(mapping, curves);
+    const std::string title = title_of_mapping(mapping, curves);
     if (!is_of_vector(mapping, curves) || !told.insert(title).second) continue;
     const std::string surface = mapping.channel.substr(0, mapping.channel.find('.'));
     const bool is_rotation = mapping.channel == surface + ".rotate";

@@ -66,7 +66,7 @@ Result<Frames> read_frames(const std::string& file) {
 }
 
 // Parses A:B or one frame: any finite numbers, also outside the scene's range.
-Result<Frames> parse_frames(const CurvesOptions& options, const Scene& scene) {
+Result<Frames> frames_asked(const CurvesOptions& options, const Scene& scene) {
   const auto usage = [](std::string message) {
     return fail(ErrorCode::InvalidInput, std::move(message));
   };
@@ -281,7 +281,7 @@ int run_curves(const CurvesOptions& options) {
   if (!scene) return report(scene.error());
   const auto channels = choose_channels(*scene, options.channels);
   if (!channels) return report(channels.error());
-  const auto frames = options.at.empty() ? parse_frames(options, *scene) : read_frames(options.at);
+  const auto frames = options.at.empty() ? frames_asked(options, *scene) : read_frames(options.at);
   if (!frames) return report(frames.error());
 
   if (auto free = check_place(options, *scene); !free) return report(free.error());

@@ -14,14 +14,14 @@
 namespace pliant {
 namespace {
 
-using Complex = std::complex<double>;
+using StdComplex = std::complex<double>;
 
 // The roots s of rho s^2 + eta s + lambda = 0, the slower one first; without inertia the second is
 // minus infinity. Eq. (38). The larger one of two real roots is computed from their product to
 // avoid cancellation.
 struct Roots {
-  Complex slow;
-  Complex fast;
+  StdComplex slow;
+  StdComplex fast;
 };
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -37,10 +37,10 @@ Roots roots_of(double lambda, const Dynamics& dynamics) {
 }
 
 // The rate of a root as seen from frame to frame: eq. (39) [1/s].
-Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
+StdComplex seen(const StdComplex& root, const TimeSteps& steps, double frame_length) {
   if (std::isinf(root.real())) return -infinite;
   if (steps.are_exact()) return root * (steps.length / frame_length);
-  const Complex half = root * steps.solved_length();
+  const StdComplex half = root * steps.solved_length();
   const double count = steps.count;
   if (!steps.are_reflected()) return -count * std::log(1.0 - half) / frame_length;
   if (half.imag() != 0) {
@@ -49,15 +49,15 @@ Complex seen(const Complex& root, const TimeSteps& steps, double frame_length) {
   // A motion that is faster than the steps changes its sign in each of them.
   const double step = (1 + half.real()) / (1 - half.real());
   const bool alternates = step < 0 && steps.count % 2 == 1;
-  return Complex(count * std::log(std::abs(step)), alternates ? std::numbers::pi : 0) /
+  return StdComplex(count * std::log(std::abs(step)), alternates ? std::numbers::pi : 0) /
          frame_length;
 }
 
 // Eq. (40).
-Swing swing_of(const Complex& slow, const Complex& fast) {
+Swing swing_of(const StdComplex& slow, const StdComplex& fast) {
   if (std::isinf(fast.real())) return {0, infinite};
   if (slow.imag() != -fast.imag()) {  // one alternates: what lasts longer is seen
-    const Complex& seen = slow.real() >= fast.real() ? slow : fast;
+    const StdComplex& seen = slow.real() >= fast.real() ? slow : fast;
     return {std::abs(seen.imag()) / (2 * std::numbers::pi), -seen.real() / std::abs(seen)};
   }
   const double omega = std::sqrt((slow * fast).real());
@@ -104,14 +104,14 @@ class Deviation {
   // their difference.
   static Matrix exactly(double lambda, const Dynamics& dynamics, double interval) {
     const Roots roots = roots_of(lambda, dynamics);
-    const Complex slow = roots.slow * interval, fast = roots.fast * interval;
+    const StdComplex slow = roots.slow * interval, fast = roots.fast * interval;
     if (std::isinf(fast.real())) {
       const double kept = std::isinf(slow.real()) ? 0 : std::exp(slow.real());
       return {kept, 0, 0, 0};
     }
-    const Complex apart = slow - fast;
+    const StdComplex apart = slow - fast;
     // (e^slow - e^fast)/(slow - fast)
-    const Complex of_slow = std::exp(slow), of_fast = std::exp(fast);
+    const StdComplex of_slow = std::exp(slow), of_fast = std::exp(fast);
     const double slope =
         std::abs(apart) < 1e-6 ? of_slow.real() : ((of_slow - of_fast) / apart).real();
     const double kept = (of_slow - slow * slope).real();
