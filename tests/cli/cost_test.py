@@ -41,10 +41,12 @@ def test_of(make, size):
     return test
 
 
-# A class for each part, so that parts can run at the same time.
-for part, kinds in KINDS.items():
-    globals()[part] = type(part, (unittest.TestCase,), {
-        f"test_{name}": test_of(make, size) for name, (make, size) in kinds.items()})
+class Cost(unittest.TestCase):
+    pass
+
+
+for name, (make, size) in KINDS.items():
+    setattr(Cost, f"test_{name}", test_of(make, size))
 
 if __name__ == "__main__":
     main()

@@ -11,16 +11,16 @@ import subprocess
 
 from command import PLIANT
 
-# By part and name: the function, and the size from which the command takes more instructions than its start.
-KINDS = {"Text": {}, "Mesh": {}, "Run": {}}
+# By name: the function, and the size from which the command takes more instructions than its start.
+KINDS = {}
 
 GRID = '<grid columns="4" rows="4"/>'
 POINT = '<point name="f{}" {}/>\n'
 
 
-def kind(part, size):
+def kind(size):
     def register(make):
-        KINDS[part][make.__name__] = (make, size)
+        KINDS[make.__name__] = (make, size)
         return make
     return register
 
@@ -53,52 +53,52 @@ def surfaces(count, name="t", more=""):
 
 # The text of scenes
 
-@kind("Text", 100_000)
+@kind(100_000)
 def sums_of_many_terms(folder, n):
     total = "+".join(["$a"] * 20_000)
     return ["validate", scene(folder, f'<define name="a" value="{"1 " * 16}"/>\n' + "".join(
         POINT.format(k, f'magnitude="{total}"') for k in range(n // 20_000)))]
 
 
-@kind("Text", 3000)
+@kind(3000)
 def chain_of_definitions(folder, n):
     return ["validate", scene(folder, '<define name="a0" value="1"/>\n' + "".join(
         f'<define name="a{k + 1}" value="$a{k} + 1"/>\n' for k in range(n)))]
 
 
-@kind("Text", 2000)
+@kind(2000)
 def chain_of_long_vectors(folder, n):
     return ["validate", scene(folder, f'<define name="a0" value="{"1 " * 15_000}"/>\n' + "".join(
         f'<define name="a{k + 1}" value="$a{k}"/>\n' for k in range(n // 20)))]
 
 
-@kind("Text", 1000)
+@kind(1000)
 def values_of_an_include(folder, n):
     uses = "".join(POINT.format(k, f'magnitude="$a{k}"') for k in range(n))
     write(folder, "part.xml", f'<fragment>{defines(n, "a")}{uses}</fragment>')
     return ["validate", scene(folder, f'<include file="part.xml">{defines(n, "a")}</include>')]
 
 
-@kind("Text", 4000)
+@kind(4000)
 def undefined_names(folder, n):
     long = "abcdefghij"
     return ["validate", scene(folder, defines(n, long) + "".join(
         POINT.format(k, f'magnitude="${long[:9]}x{long[10:]}{k}"') for k in range(n)))]
 
 
-@kind("Text", 500)
+@kind(500)
 def targets_of_forces(folder, n):
     names = " ".join(f"t{k}" for k in range(n))
     forces = "".join(POINT.format(k, f'targets="{names}"') for k in range(10))
     return ["validate", scene(folder, f'{surfaces(n)}<group name="g" targets="{names}">{forces}</group>', surface="")]
 
 
-@kind("Text", 500)
+@kind(500)
 def driven_surfaces(folder, n):
     return ["validate", scene(folder, surfaces(n) + surfaces(n, "d", ' drivenBy="t{}"'), surface="")]
 
 
-@kind("Text", 1000)
+@kind(1000)
 def forces_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(POINT.format(k, f'center="{1000 + k} 0 0"') for k in range(n)))]
 
@@ -109,32 +109,32 @@ SELECTING = NEAR + ' deformationRadius="2"'
 SMALL = '<grid columns="7" rows="7" width="6" depth="6"/><material density="1" damping="1"/>'
 
 
-@kind("Text", 200)
+@kind(200)
 def acting_forces_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(POINT.format(k, SELECTING) for k in range(n)), SMALL)]
 
 
-@kind("Text", 200)
+@kind(200)
 def acting_forces_of_a_group_in_info(folder, n):
     forces = "".join(POINT.format(k, NEAR) for k in range(n))
     return ["info", "--quiet", scene(folder, f'<group name="g" center="0 0 0" deformationRadius="2">{forces}</group>',
                                      SMALL)]
 
 
-@kind("Text", 200)
+@kind(200)
 def groups_of_an_acting_force_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(
         f'<group name="g{k}" center="0 0 0" deformationRadius="2">{POINT.format(k, NEAR)}</group>\n'
         for k in range(n)), SMALL)]
 
 
-@kind("Text", 300)
+@kind(300)
 def groups_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(
         f'<group name="g{k}" center="{1000 + k} 0 0">{POINT.format(k, "")}</group>\n' for k in range(n)))]
 
 
-@kind("Text", 3000)
+@kind(3000)
 def problems_on_one_line(folder, n):
     points = "".join(f'<point name="f{k}" magnitude="x"/>' for k in range(n))
     return ["validate", "--json", scene(folder, points)]
@@ -146,7 +146,7 @@ def keyed(count, keys):
                    for k in range(count))
 
 
-@kind("Text", 500)
+@kind(500)
 def format_of_many_curves(folder, n):
     return ["format", scene(folder, keyed(n, 2))]
 
@@ -167,7 +167,7 @@ def obj(points, faces):
         "f " + " ".join(map(str, face)) + "\n" for face in faces)
 
 
-@kind("Mesh", 2000)
+@kind(2000)
 def polygon_like_a_comb(folder, n):
     teeth = n // 3
     points = [(2 * k, 0) for k in range(teeth)]
@@ -181,26 +181,26 @@ def fan(n):
     return "v 0 0 0\n" + "".join(f"v 1 0 {k}\nv 1 0 {k + 0.5}\n" for k in range(n))
 
 
-@kind("Mesh", 1500)
+@kind(1500)
 def normals_and_uvs_of_one_vertex(folder, n):
     values = "".join(f"vn 0 1 {k}\nvt 0 {k / n}\n" for k in range(n))
     faces = "".join(f"f 1/{k}/{k} {2 * k}/{k}/{k} {2 * k + 1}/{k}/{k}\n" for k in range(1, n + 1))
     return mesh(folder, "a.obj", fan(n) + values + faces, out="a.gltf")
 
 
-@kind("Mesh", 1500)
+@kind(1500)
 def smoothing_groups(folder, n):
     return mesh(folder, "a.obj", fan(n) + "".join(f"s {k}\nf 1 {2 * k} {2 * k + 1}\n" for k in range(1, n + 1)),
                 out="a.gltf")
 
 
-@kind("Mesh", 1500)
+@kind(1500)
 def materials_of_an_obj(folder, n):
     return mesh(folder, "a.obj", "".join(f"v {k} 0 0\nv {k} 0 1\nv {k} 1 0\nusemtl m{k}\nf -3 -2 -1\n" for k in range(n)),
                 out="a.usda")
 
 
-@kind("Mesh", 2000)
+@kind(2000)
 def points_nearly_in_one_place(folder, n):
     half = n // 2
     u, v = (2 ** -0.5, -2 ** -0.5, 0), (6 ** -0.5, 6 ** -0.5, -2 * 6 ** -0.5)
@@ -218,12 +218,12 @@ def ply(properties, elements, rest):
             f"property list uchar int vertex_indices\n{elements}end_header\n{lines}3 0 1 2\n")
 
 
-@kind("Mesh", 4000)
+@kind(4000)
 def ply_properties(folder, n):
     return mesh(folder, "a.ply", ply("".join(f"property char p{k}\n" for k in range(n)), "", " 1" * n), info=True)
 
 
-@kind("Mesh", 4000)
+@kind(4000)
 def ply_elements(folder, n):
     return mesh(folder, "a.ply", ply("", "".join(f"element e{k} 0\nproperty int a\n" for k in range(n)), ""), info=True)
 
@@ -240,12 +240,12 @@ def gltf(**more):
                        "meshes": [{"primitives": [TRIANGLE]}], "nodes": [{"mesh": 0}], **more})
 
 
-@kind("Mesh", 1000)
+@kind(1000)
 def gltf_nodes_by_primitives(folder, n):
     return mesh(folder, "a.gltf", gltf(meshes=[{"primitives": [TRIANGLE] * n}], nodes=[{"mesh": 0}] * n), info=True)
 
 
-@kind("Mesh", 1000)
+@kind(1000)
 def gltf_materials(folder, n):
     return mesh(folder, "a.gltf", gltf(
         materials=[{"name": f"m{k}"} for k in range(n)],
@@ -254,12 +254,12 @@ def gltf_materials(folder, n):
 
 # Output, sweeps, logs and curves
 
-@kind("Run", 100)
+@kind(100)
 def surfaces_in_one_usda(folder, n):
     return ["bake", scene(folder, surfaces(n), surface=""), "-o", os.path.join(folder, "a.usda"), "--quiet"]
 
 
-@kind("Run", 200)
+@kind(200)
 def forces_apart(folder, n):
     half, row = n // 2, int((n / 2) ** 0.5) + 1
     side = 8 * row
@@ -270,7 +270,7 @@ def forces_apart(folder, n):
             "-o", os.path.join(folder, "a.npy"), "--quiet", "--threads", "1"]
 
 
-@kind("Run", 500)
+@kind(500)
 def samples_in_32_dimensions(folder, n):
     made = scene(folder, "".join(POINT.format(k, "") for k in range(32)))
     vary = [word for k in range(32) for word in ("--vary", f"f{k}.magnitude=1:2")]
@@ -291,18 +291,18 @@ def sweep(folder, edited):
     return ["sweep", "status", os.path.join(folder, "out")]
 
 
-@kind("Run", 10_000)
+@kind(10_000)
 def members_of_a_sweep(folder, n):
     return sweep(folder, {**sweep_of(folder), **{f"member{k}": k for k in range(n)}})
 
 
-@kind("Run", 4000)
+@kind(4000)
 def axes_of_a_sweep(folder, n):
     return sweep(folder, {**sweep_of(folder), "axes": [{"paths": [k], "count": 1, "texts": ["1"]} for k in range(n)],
                           "paths": [{"path": f"f.v{k}", "kind": "="} for k in range(n)]})
 
 
-@kind("Run", 1000)
+@kind(1000)
 def columns_of_a_table(folder, n):
     table = ",".join(f"f.v{k}" for k in range(n)) + "\n" + ",".join(["1"] * n) + "\n"
     return ["sweep", "run", scene(folder, POINT.format("", "")), "-o", os.path.join(folder, "out"), "--dry-run", "--takes",
@@ -314,13 +314,13 @@ def sweep_of_forces(folder, n, *options):
     return ["sweep", "run", made, "-o", os.path.join(folder, "out"), "--make-only", *options]
 
 
-@kind("Run", 500)
+@kind(500)
 def columns_for_as_many_forces(folder, n):
     table = ",".join(f"f{k}.magnitude" for k in range(n)) + "\n" + ",".join(["1"] * n) + "\n"
     return sweep_of_forces(folder, n, "--takes", write(folder, "takes.csv", table))
 
 
-@kind("Run", 500)
+@kind(500)
 def axes_for_as_many_forces(folder, n):
     return sweep_of_forces(folder, n, *(word for k in range(n) for word in ("--vary", f"f{k}.magnitude=1")))
 
@@ -355,27 +355,27 @@ def log(folder, lines):
     return ["replay", "diff", file, file]
 
 
-@kind("Run", 5000)
+@kind(5000)
 def members_of_a_log(folder, n):
     first, *others = log_of(folder)
     return log(folder, [first + "".join(f',"k{k}":1' for k in range(n)), *others])
 
 
-@kind("Run", 2000)
+@kind(2000)
 def files_of_a_log(folder, n):
     first, *others = log_of(folder)
     header = {**json.loads(first + "}"), "files": [{"name": f"f{k}", "hash": "0" * 32} for k in range(n)]}
     return log(folder, [json.dumps(header, separators=(",", ":"))[:-1], *others])
 
 
-@kind("Run", 1500)
+@kind(1500)
 def curves_of_maya(folder, n):
     curves = "".join(f"anim a a n{k} 0 0 0;\nanimData {{\n input time; output linear; weighted 0; "
                      f"keys {{ {k} 1 flat flat 0 0 0; }} }}\n" for k in range(n))
     return ["import", "curves", write(folder, "a.anim", "animVersion 1.1;\ntimeUnit film;\n" + curves)]
 
 
-@kind("Run", 150)
+@kind(150)
 def import_of_many_curves(folder, n):
     made = scene(folder, "".join(POINT.format(k, "") for k in range(n)))
     curves = {"format": "blender-curves", "version": 1, "fps": 24, "curves": [
