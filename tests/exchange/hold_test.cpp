@@ -16,21 +16,21 @@ using namespace testing;
 constexpr WantedFrames wanted{-10, 50};
 
 Held held(const CurveKeys<1>& keys, const Abilities& abilities, double tolerance = 1e-3) {
-  return hold(pieces_of(make(keys)), abilities, tolerance, wanted).value();
+  return hold(segments_of(make(keys)), abilities, tolerance, wanted).value();
 }
 
 TEST_CASE("a format with all abilities keeps everything", "[exchange][hold]") {
   const Abilities all{.has_step_next = true,
                       .has_left_values = true,
                       .has_counted_copies = true,
-                      .has_easing = [](const Piece&) { return true; }};
+                      .has_easing = [](const Segment&) { return true; }};
   CurveKeys<1> keys{.keys = {key(0, 1, of_ease(Ease::Elastic, EaseSide::Out)),
                              with_left(key(6, 4, of_segment(SegmentKind::StepNext)), 2),
                              key(12, -1)}};
   keys.after.kind = OutsideKind::Repeat;
   const Held result = held(keys, all);
   CHECK(result.losses.empty());
-  CHECK(result.pieces.frames == std::vector<double>{0, 6, 12});
+  CHECK(result.segments.frames == std::vector<double>{0, 6, 12});
 }
 
 TEST_CASE("what a format cannot hold is told once, with the first key and the deviation",
@@ -56,8 +56,8 @@ TEST_CASE("a level segment is one line, whatever its handles", "[exchange][hold]
   for (const double tolerance : {0.0, 1e-3}) {
     const Held result = held({.keys = {first, second}}, {}, tolerance);
     CHECK(result.losses.empty());
-    REQUIRE(result.pieces.pieces.size() == 1);
-    CHECK(make(keys_of(result.pieces)).value(9.3)[0] == 5);
+    REQUIRE(result.segments.segments.size() == 1);
+    CHECK(make(keys_of(result.segments)).value(9.3)[0] == 5);
   }
 }
 
@@ -65,11 +65,11 @@ TEST_CASE("an easing that a jump cuts keeps its shape", "[exchange][hold]") {
   const auto ease = GENERATE(Ease::Sine, Ease::Expo, Ease::Bounce, Ease::Back, Ease::Elastic);
   const auto side = GENERATE(EaseSide::In, EaseSide::Out);
   const Abilities blender{
-      .has_steps = true, .has_easing = [](const Piece&) { return true; }, .gap = 1.0 / 1024};
+      .has_steps = true, .has_easing = [](const Segment&) { return true; }, .gap = 1.0 / 1024};
   const CurveKeys<1> keys{
       .keys = {key(1, 0, of_ease(ease, side)), with_left(key(3, 0), 100), key(9, 4)}};
   const Held result = held(keys, blender, 1e-2);
-  const Curve<1> before = make(keys), after = make(keys_of(result.pieces));
+  const Curve<1> before = make(keys), after = make(keys_of(result.segments));
   CHECK(disagreement(before, after, 1, 3 - 2.0 / 1024, {0, 1e-2}) == 0);
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("what becomes too many keys is refused before it is made", "[exchange]
     elastic.period = 1e-4;
     keys.keys.push_back(key(k, k % 7, elastic));
   }
-  const auto result = hold(pieces_of(make(keys)), {}, 1e-6, wanted);
+  const auto result = hold(segments_of(make(keys)), {}, 1e-6, wanted);
   REQUIRE_FALSE(result.has_value());
   CHECK_THAT(result.error().message, contains_text("would become more than 500000 keys"));
 }
@@ -92,9 +92,9 @@ TEST_CASE("easings that are cubics become them exactly", "[exchange][hold]") {
   const Held result = held(keys, {.has_long_arms = false});
   for (const Loss& loss : result.losses) CHECK(loss.is_exact);
   const Curve<1> before = make(keys);
-  const Curve<1> after = make(keys_of(result.pieces));
+  const Curve<1> after = make(keys_of(result.segments));
   CHECK(disagreement(before, after, 2, 14, {1e-13, 1e-13}) == 0);
-  if (side != EaseSide::InOut && ease != Ease::Bounce) CHECK(result.pieces.pieces.size() == 1);
+  if (side != EaseSide::InOut && ease != Ease::Bounce) CHECK(result.segments.segments.size() == 1);
 }
 
 TEST_CASE("a jump takes the gap of the format and no more", "[exchange][hold]") {
@@ -102,29 +102,29 @@ TEST_CASE("a jump takes the gap of the format and no more", "[exchange][hold]") 
                                    with_left(key(10, 7, of_segment(SegmentKind::Linear)), 5),
                                    key(20, 7)}};
   const Held result = held(keys, {.gap = 0.25});
-  CHECK(result.pieces.frames == std::vector<double>{0, 9.75, 10, 20});
-  CHECK_THAT(result.pieces.values[1], WithinAbs(4.875, 1e-12));
-  CHECK(result.pieces.pieces[1].kind == Piece::Kind::Constant);
+  CHECK(result.segments.frames == std::vector<double>{0, 9.75, 10, 20});
+  CHECK_THAT(result.segments.values[1], WithinAbs(4.875, 1e-12));
+  CHECK(result.segments.segments[1].kind == Segment::Kind::Constant);
   REQUIRE(result.losses.size() == 1);
   CHECK(result.losses[0].message == "the jump of key 10 became a step of 0.25 frames");
   // Without steps it is a ramp.
   const Held ramp = held(keys, {.has_steps = false, .gap = 0.25});
-  CHECK(ramp.pieces.pieces[1].kind == Piece::Kind::Line);
-  CHECK(ramp.pieces.pieces[1].to == 7);
+  CHECK(ramp.segments.segments[1].kind == Segment::Kind::Line);
+  CHECK(ramp.segments.segments[1].to == 7);
 }
 
 TEST_CASE("copies become keys, as far as frames are wanted", "[exchange][hold]") {
   CurveKeys<1> keys{.keys = {key(0, 0), key(10, 2)}};
   keys.after.kind = OutsideKind::RepeatOffset;
   const Held endless = held(keys, {.has_copies = false});
-  CHECK(endless.pieces.frames == std::vector<double>{0, 10, 20, 30, 40, 50});
-  CHECK(endless.pieces.values.back() == 10);
+  CHECK(endless.segments.frames == std::vector<double>{0, 10, 20, 30, 40, 50});
+  CHECK(endless.segments.values.back() == 10);
   REQUIRE(endless.losses.size() == 1);
   CHECK(endless.losses[0].message == "the copies after the keys became 4 keys, up to frame 50");
   CHECK_FALSE(endless.losses[0].is_exact);
   keys.after.count = 2;
   const Held counted = held(keys, {});
-  CHECK(counted.pieces.frames == std::vector<double>{0, 10, 20, 30});
+  CHECK(counted.segments.frames == std::vector<double>{0, 10, 20, 30});
   REQUIRE(counted.losses.size() == 1);
   CHECK(counted.losses[0].is_exact);
 }
@@ -133,13 +133,13 @@ TEST_CASE("a line beyond the keys becomes a key at the wanted frame", "[exchange
   CurveKeys<1> keys{.keys = {key(0, 1), key(10, 2)}};
   keys.after = {.kind = OutsideKind::Slope, .slope = {0.5}};
   const Held result = held(keys, {.has_lines = false});
-  CHECK(result.pieces.frames == std::vector<double>{0, 10, 50});
-  CHECK(result.pieces.values.back() == 22);
+  CHECK(result.segments.frames == std::vector<double>{0, 10, 50});
+  CHECK(result.segments.values.back() == 22);
 }
 
 TEST_CASE("numbers that no program computes with are refused", "[exchange][hold]") {
   const auto problem = [](const CurveKeys<1>& keys) {
-    const auto result = hold(pieces_of(make(keys)), {}, 1e-3, wanted);
+    const auto result = hold(segments_of(make(keys)), {}, 1e-3, wanted);
     return result ? "" : result.error().message;
   };
   CHECK_THAT(problem({.keys = {key(0, 0), key(1e8, 1)}}),
@@ -163,8 +163,8 @@ TEST_CASE("a segment that changes too fast for keys becomes few, and tells what 
       contains_text(fmt::format(
           "the elastic easing of key 0 changed too fast and became {} keys, within ", most)));
   CHECK_FALSE(result.losses[0].is_exact);
-  CHECK(result.pieces.pieces.size() <= most + 2);  // jumps at its ends
-  CHECK(make(keys_of(result.pieces)).keys().keys.size() == result.pieces.frames.size());
+  CHECK(result.segments.segments.size() <= most + 2);  // jumps at its ends
+  CHECK(make(keys_of(result.segments)).keys().keys.size() == result.segments.frames.size());
 }
 
 TEST_CASE("a segment that stands upright becomes a steep one, not a spike", "[exchange][hold]") {
@@ -173,7 +173,7 @@ TEST_CASE("a segment that stands upright becomes a steep one, not a spike", "[ex
   keys.keys[0].out = {.kind = Tangent<1>::Kind::Handle, .handle_frames = 10};
   keys.keys[1].in = {.kind = Tangent<1>::Kind::Handle, .handle_frames = -10};
   const Held result = held(keys, {.has_long_arms = false}, 1e-4 * std::fabs(to));
-  const Curve<1> curve = make(keys_of(result.pieces));
+  const Curve<1> curve = make(keys_of(result.segments));
   const double margin = 1e-3 * std::fabs(to);
   for (int k = 0; k <= 100'000; ++k) {
     const double value = curve.value(5 + 1e-4 * k)[0];

@@ -87,62 +87,62 @@ Result<Change> SceneDocument::apply(const std::vector<Operation>& operations,
   if (auto done = objects.flush(); !done) return fail(done.error());
   std::set<std::string> parts = objects.parts();
   parts.insert(editor.parts().begin(), editor.parts().end());
-  Step step{.name = name, .batches = draft->take_batches(), .parts = {parts.begin(), parts.end()}};
-  if (name.empty() && !operations.empty()) step.name = described(operations.front());
+  Edit edit{.name = name, .batches = draft->take_batches(), .parts = {parts.begin(), parts.end()}};
+  if (name.empty() && !operations.empty()) edit.name = described(operations.front());
   if (name.empty() && operations.size() > 1)
-    step.name += fmt::format(" and {} more", operations.size() - 1);
-  if (draft->text() == text_) return Change{.name = step.name};
+    edit.name += fmt::format(" and {} more", operations.size() - 1);
+  if (draft->text() == text_) return Change{.name = edit.name};
   auto scene = checked(draft->text());
   if (!scene) return fail(scene.error());
   scene_ = *std::move(scene);
   text_ = draft->text();
-  steps_.resize(done_);
-  steps_.push_back(std::move(step));
+  edits_.resize(done_);
+  edits_.push_back(std::move(edit));
   ++done_;
-  const Step& last = steps_.back();
+  const Edit& last = edits_.back();
   return Change{.name = last.name, .edits = in_order(last.batches), .parts = last.parts};
 }
 
 /// Takes the text that the batches make of the present one.
-Result<Change> SceneDocument::take(std::string text, const Step& step,
+Result<Change> SceneDocument::take(std::string text, const Edit& edit,
                                    const std::vector<edit::EditBatch>& batches) {
   auto scene = parse(text);
   if (!scene) return fail(scene.error());
   scene_ = *std::move(scene);
   text_ = std::move(text);
-  return Change{.name = step.name, .edits = in_order(batches), .parts = step.parts};
+  return Change{.name = edit.name, .edits = in_order(batches), .parts = edit.parts};
 }
 
 Result<Change> SceneDocument::undo() {
   if (!can_undo()) return fail(ErrorCode::InvalidInput, "there is nothing to undo", file_);
-  const Step& step = steps_[done_ - 1];
+  const Edit& edit = edits_[done_ - 1];
   std::vector<edit::EditBatch> batches;
   std::string text = text_;
-  for (auto batch = step.batches.rbegin(); batch != step.batches.rend(); ++batch) {
+  for (auto batch = edit.batches.rbegin(); batch != edit.batches.rend(); ++batch) {
     batches.push_back(edit::reversed(*batch));
     text = edit::made(text, batches.back());
   }
-  auto change = take(std::move(text), step, batches);
+  auto change = take(std::move(text), edit, batches);
   if (change) --done_;
   return change;
 }
 
 Result<Change> SceneDocument::redo() {
   if (!can_redo()) return fail(ErrorCode::InvalidInput, "there is nothing to redo", file_);
-  const Step& step = steps_[done_];
+  const Edit& edit = edits_[done_];
   std::string text = text_;
-  for (const edit::EditBatch& batch : step.batches) text = edit::made(text, batch);
-  auto change = take(std::move(text), step, step.batches);
+  for (const edit::EditBatch& batch : edit.batches) text = edit::made(text, batch);
+  auto change = take(std::move(text), edit, edit.batches);
   if (change) ++done_;
   return change;
 }
 
 const std::string& SceneDocument::undo_name() const {
-  return can_undo() ? steps_[done_ - 1].name : no_name;
+  return can_undo() ? edits_[done_ - 1].name : no_name;
 }
 
 const std::string& SceneDocument::redo_name() const {
-  return can_redo() ? steps_[done_].name : no_name;
+  return can_redo() ? edits_[done_].name : no_name;
 }
 
 Result<void> SceneDocument::save() {

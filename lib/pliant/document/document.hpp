@@ -22,9 +22,9 @@ struct DocumentOptions {
   StopRequest should_stop = {};
 };
 
-/// What a step changed.
+/// What a edit changed.
 struct Change {
-  std::string name;                     ///< of the step
+  std::string name;                     ///< of the edit
   std::vector<TextEdit> edits = {};     ///< of the text, to be made one after the other
   std::vector<std::string> parts = {};  ///< `NAME.attribute`, or `NAME` of a whole object; sorted
 };
@@ -45,19 +45,19 @@ class SceneDocument {
   const Scene& scene() const { return scene_; }
   const std::string& file() const { return file_; }
 
-  /// Makes operations as one step, all or nothing; `name`: of the step, by default what the first
-  /// one does. Steps that were undone are lost. A step that changes no byte is none.
+  /// Makes operations as one edit, all or nothing; `name`: of the edit, by default what the first
+  /// one does. Edits that were undone are lost. A edit that changes no byte is none.
   ///
   /// Errors: an operation names what is not there, or asks for what its comment excludes; the
   /// resulting text has a problem, said as for a file that has it.
   Result<Change> apply(const std::vector<Operation>& operations, const std::string& name = {});
 
-  /// Takes the last step back, or makes it again. Errors: there is none; InvalidInput, Unreadable
+  /// Takes the last edit back, or makes it again. Errors: there is none; InvalidInput, Unreadable
   /// if a file that the scene includes has changed so that the text cannot be read any more.
   Result<Change> undo();
   Result<Change> redo();
   bool can_undo() const { return done_ > 0; }
-  bool can_redo() const { return done_ < steps_.size(); }
+  bool can_redo() const { return done_ < edits_.size(); }
   const std::string& undo_name() const;  ///< empty: there is none
   const std::string& redo_name() const;
 
@@ -73,7 +73,7 @@ class SceneDocument {
   Result<bool> has_file_changed() const;
 
  private:
-  struct Step {
+  struct Edit {
     std::string name;
     std::vector<edit::EditBatch> batches;  // one after the other
     std::vector<std::string> parts;
@@ -82,7 +82,7 @@ class SceneDocument {
   SceneDocument() = default;
   Result<Scene> parse(const std::string& text) const;
   Result<Scene> checked(const std::string& text) const;
-  Result<Change> take(std::string text, const Step& step,
+  Result<Change> take(std::string text, const Edit& edit,
                       const std::vector<edit::EditBatch>& batches);
 
   std::string file_;
@@ -91,8 +91,8 @@ class SceneDocument {
   std::string text_;
   std::string saved_;
   Scene scene_;
-  std::vector<Step> steps_;
-  std::size_t done_ = 0;  // steps that are not undone
+  std::vector<Edit> edits_;
+  std::size_t done_ = 0;  // edits that are not undone
 };
 
 /// Whether the text of a scene, whose files are relative to `folder`, means the same as the text of

@@ -3,7 +3,7 @@
 #include <numbers>
 
 #include "pliant/core/elementary.hpp"
-#include "pliant/exchange/pieces.hpp"
+#include "pliant/exchange/segments.hpp"
 
 namespace pliant::exchange {
 
@@ -11,14 +11,14 @@ namespace pliant::exchange {
 /// BLI_easing_elastic_ease_in and the others, easing.c.
 class TurnedElastic {
  public:
-  explicit TurnedElastic(const Piece& piece)
-      : start_(piece.start),
-        length_(piece.length()),
-        from_(piece.from),
-        change_(piece.to - piece.from),
-        side_(piece.easing.side),
-        amplitude_(*piece.easing.amplitude),
-        period_(piece.easing.period.value_or(0)) {
+  explicit TurnedElastic(const Segment& segment)
+      : start_(segment.start),
+        length_(segment.length()),
+        from_(segment.from),
+        change_(segment.to - segment.from),
+        side_(segment.easing.side),
+        amplitude_(*segment.easing.amplitude),
+        period_(segment.easing.period.value_or(0)) {
     if (period_ == 0) period_ = length_ * (side_ == EaseSide::InOut ? 0.45 : 0.3);
     shift_ = period_ / (2 * std::numbers::pi) * asin_of(change_ / amplitude_);
   }

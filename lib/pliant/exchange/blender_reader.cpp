@@ -13,14 +13,14 @@
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/fit.hpp"
 #include "pliant/exchange/hold.hpp"
-#include "pliant/exchange/pieces.hpp"
+#include "pliant/exchange/segments.hpp"
 #include "pliant/files/file_object.hpp"
 #include "pliant/files/json/json_reader.hpp"
 
 namespace pliant::exchange {
 namespace {
 
-using Segment = Interpolation::Kind;
+using InterpolationKind = Interpolation::Kind;
 using Side = Extrapolation<1>::Kind;
 
 template <std::size_t N>
@@ -189,12 +189,13 @@ class BlenderReader : private JsonReader {
     const std::string name = text(json, "interpolation").value_or("BEZIER");
     const auto side = word(json, "easing", sides).value_or(3);
     if (is_discrete_) {
-      key.next.kind = Segment::Step;
+      key.next.kind = InterpolationKind::Step;
     } else if (const auto kind = index_of(plain, name)) {
-      constexpr Segment kinds[] = {Segment::Step, Segment::Linear, Segment::Bezier};
+      constexpr InterpolationKind kinds[] = {InterpolationKind::Step, InterpolationKind::Linear,
+                                             InterpolationKind::Bezier};
       key.next.kind = kinds[*kind];
     } else if (const auto ease = index_of(blender_eases, name)) {
-      key.next.kind = Segment::Easing;
+      key.next.kind = InterpolationKind::Easing;
       key.next.ease = static_cast<Ease>(*ease);
       const bool is_springy = key.next.ease == Ease::Back || key.next.ease == Ease::Bounce ||
                               key.next.ease == Ease::Elastic;
@@ -273,8 +274,8 @@ class BlenderReader : private JsonReader {
     const auto side = [&](bool is_before) -> Extrapolation<1> {
       const std::size_t last = keys.keys.size() - 1;
       const Key<1>& end = keys.keys[is_before ? 0 : last];
-      if (end.next.kind == Segment::Step) return {};
-      if (end.next.kind != Segment::Linear) return {.kind = Side::LinearOuter};
+      if (end.next.kind == InterpolationKind::Step) return {};
+      if (end.next.kind != InterpolationKind::Linear) return {.kind = Side::LinearOuter};
       if (last == 0) return {};
       const Key<1>& near = keys.keys[is_before ? 1 : last - 1];
       return {.kind = Side::Slope,
@@ -294,7 +295,7 @@ class BlenderReader : private JsonReader {
       if (k + 1 == keys.keys.size()) break;
       const Key<1>& next = keys.keys[k + 1];
       const double to = next.left ? (*next.left)[0] : next.value[0];
-      if (keys.keys[k].next.kind != Segment::Easing ||
+      if (keys.keys[k].next.kind != InterpolationKind::Easing ||
           has_blender_easing(keys.keys[k].next, to - keys.keys[k].value[0]))
         continue;
       ++count;
@@ -312,7 +313,7 @@ class BlenderReader : private JsonReader {
 
   double add_turned_elastic(const Key<1>& key, const Key<1>& next, double to,
                             std::vector<Key<1>>& result) {
-    const TurnedElastic elastic({.kind = Piece::Kind::Easing,
+    const TurnedElastic elastic({.kind = Segment::Kind::Easing,
                                  .start = key.frame,
                                  .end = next.frame,
                                  .from = key.value[0],
@@ -400,38 +401,39 @@ class BlenderReader : private JsonReader {
                     bool has_after) {
     const auto curve = made(keys), without = made(plain);
     if (!curve || !without) return false;
-    auto pieces = with_copies(pieces_of(*curve), has_before ? std::optional(-1e9) : std::nullopt,
-                              has_after ? std::optional(1e9) : std::nullopt);
-    if (!pieces) {
-      refuse("cycles", "has too many copies: " + pieces.error().message);
+    auto segments =
+        with_copies(segments_of(*curve), has_before ? std::optional(-1e9) : std::nullopt,
+                    has_after ? std::optional(1e9) : std::nullopt);
+    if (!segments) {
+      refuse("cycles", "has too many copies: " + segments.error().message);
       return false;
     }
-    const std::size_t count = pieces->frames.size() - plain.keys.size();
+    const std::size_t count = segments->frames.size() - plain.keys.size();
     if (has_before) {
-      const double end = pieces->frames.front();
-      pieces->frames.insert(pieces->frames.begin(), end - 1);
-      add_piece(*pieces, *without, end - 1, end, pieces->pieces.begin());
-      pieces->values.insert(pieces->values.begin(), pieces->pieces.front().from);
+      const double end = segments->frames.front();
+      segments->frames.insert(segments->frames.begin(), end - 1);
+      add_segment(*segments, *without, end - 1, end, segments->segments.begin());
+      segments->values.insert(segments->values.begin(), segments->segments.front().from);
     }
     if (has_after) {
-      const double end = pieces->frames.back();
-      pieces->frames.push_back(end + 1);
-      add_piece(*pieces, *without, end, end + 1, pieces->pieces.end());
-      const bool is_line = pieces->pieces.back().kind == Piece::Kind::Line;
-      if (is_line && pieces->pieces.back().from != pieces->values.back()) {
+      const double end = segments->frames.back();
+      segments->frames.push_back(end + 1);
+      add_segment(*segments, *without, end, end + 1, segments->segments.end());
+      const bool is_line = segments->segments.back().kind == Segment::Kind::Line;
+      if (is_line && segments->segments.back().from != segments->values.back()) {
         // A line cannot begin with another value than that of its key.
-        pieces->values.back() = pieces->pieces.back().from;
+        segments->values.back() = segments->segments.back().from;
         lose(fmt::format("on frame {}, the last of its copies, it has the value beside it", end));
       }
-      pieces->values.push_back(pieces->pieces.back().to);
+      segments->values.push_back(segments->segments.back().to);
     }
-    pieces->before = {.anchor = pieces->values.front()};
-    pieces->after = {.anchor = pieces->values.back()};
+    segments->before = {.anchor = segments->values.front()};
+    segments->after = {.anchor = segments->values.back()};
     // A copy that begins with another value than the one before ends with jumps off its key.
     const Abilities abilities{.has_step_next = true,
                               .has_left_values = true,
-                              .has_easing = [](const Piece&) { return true; }};
-    auto held = hold(*std::move(pieces), abilities, 0, {}, reading_.should_stop);
+                              .has_easing = [](const Segment&) { return true; }};
+    auto held = hold(*std::move(segments), abilities, 0, {}, reading_.should_stop);
     if (!held && held.error().code == ErrorCode::Interrupted) {
       end();
       return false;
@@ -441,7 +443,7 @@ class BlenderReader : private JsonReader {
       return false;
     }
     for (Loss& loss : held->losses) lose(std::move(loss.message), loss.is_exact);
-    keys.keys = keys_of(held->pieces).keys;
+    keys.keys = keys_of(held->segments).keys;
     keys.before = without_copies(*without, plain, true);
     keys.after = without_copies(*without, plain, false);
     keys.overshoot = Overshoot::Limit;
@@ -449,12 +451,12 @@ class BlenderReader : private JsonReader {
     return true;
   }
 
-  static void add_piece(Pieces& pieces, const Curve<1>& without, double start, double end,
-                        std::vector<Piece>::iterator at) {
-    Piece piece{
+  static void add_segment(Segments& segments, const Curve<1>& without, double start, double end,
+                          std::vector<Segment>::iterator at) {
+    Segment segment{
         .start = start, .end = end, .from = without.value(start)[0], .to = without.value(end)[0]};
-    if (piece.from == piece.to) piece.kind = Piece::Kind::Constant;
-    pieces.pieces.insert(at, piece);
+    if (segment.from == segment.to) segment.kind = Segment::Kind::Constant;
+    segments.segments.insert(at, segment);
   }
 
   static Extrapolation<1> without_copies(const Curve<1>& without, const CurveKeys<1>& plain,

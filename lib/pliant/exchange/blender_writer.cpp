@@ -16,8 +16,8 @@ Abilities blender_abilities() {
   return {.lines_need_motion = true,
           .has_counted_copies = true,
           .has_easing =
-              [](const Piece& piece) {
-                return has_blender_easing(piece.easing, piece.to - piece.from);
+              [](const Segment& segment) {
+                return has_blender_easing(segment.easing, segment.to - segment.from);
               },
           .has_bold_arms = false};
 }
@@ -47,34 +47,34 @@ bool is_sloped(const Beyond& side) { return side.kind == Beyond::Kind::Line && s
 class FCurveText {
  public:
   /// `factor`: of values, degrees become radians.
-  FCurveText(const Pieces& pieces, double factor)
-      : pieces_(pieces),
+  FCurveText(const Segments& segments, double factor)
+      : segments_(segments),
         factor_(factor),
-        is_linear_(is_sloped(pieces.before) || is_sloped(pieces.after)) {}
+        is_linear_(is_sloped(segments.before) || is_sloped(segments.after)) {}
 
   /// A part of it, if it is stopped.
   void append_to(std::string& text, const StopRequest& should_stop) const {
     const auto out = std::back_inserter(text);
     fmt::format_to(out, "      \"extrapolation\": \"{}\",\n", is_linear_ ? "LINEAR" : "CONSTANT");
-    if (cycle_mode(pieces_.before) + cycle_mode(pieces_.after) > 0) {
+    if (cycle_mode(segments_.before) + cycle_mode(segments_.after) > 0) {
       fmt::format_to(out,
                      "      \"cycles\": {{\"before\": \"{}\", \"before_count\": {}, \"after\": "
                      "\"{}\", \"after_count\": {}}},\n",
-                     blender_cycles[cycle_mode(pieces_.before)], cycle_count(pieces_.before),
-                     blender_cycles[cycle_mode(pieces_.after)], cycle_count(pieces_.after));
+                     blender_cycles[cycle_mode(segments_.before)], cycle_count(segments_.before),
+                     blender_cycles[cycle_mode(segments_.after)], cycle_count(segments_.after));
     }
     text += "      \"keys\": [\n";
-    for (std::size_t k = 0; k < pieces_.frames.size(); ++k) {
+    for (std::size_t k = 0; k < segments_.frames.size(); ++k) {
       if (is_stopped(should_stop, k)) return;
       append_key(text, k);
-      text += k + 1 < pieces_.frames.size() ? ",\n" : "\n";
+      text += k + 1 < segments_.frames.size() ? ",\n" : "\n";
     }
     text += "      ]";
   }
 
  private:
   void append_key(std::string& text, std::size_t k) const {
-    const double frame = pieces_.frames[k], value = pieces_.values[k];
+    const double frame = segments_.frames[k], value = segments_.values[k];
     const Arm left = left_of(k), right = right_of(k);
     fmt::format_to(std::back_inserter(text),
                    "        {{\"co\": [{}, {}], \"left\": [{}, {}], \"right\": [{}, {}], "
@@ -87,10 +87,10 @@ class FCurveText {
 
   void append_interpolation(std::string& text, std::size_t k) const {
     const auto out = std::back_inserter(text);
-    const bool is_last = k == pieces_.pieces.size();
-    const Piece* const piece = is_last ? nullptr : &pieces_.pieces[k];
-    if (piece && piece->kind == Piece::Kind::Easing) {
-      const Interpolation& easing = piece->easing;
+    const bool is_last = k == segments_.segments.size();
+    const Segment* const segment = is_last ? nullptr : &segments_.segments[k];
+    if (segment && segment->kind == Segment::Kind::Easing) {
+      const Interpolation& easing = segment->easing;
       fmt::format_to(out, "\"interpolation\": \"{}\", \"easing\": \"{}\"",
                      blender_eases[static_cast<std::size_t>(easing.ease)],
                      blender_sides[static_cast<std::size_t>(easing.side)]);
@@ -98,37 +98,38 @@ class FCurveText {
         fmt::format_to(out, ", \"back\": {}", easing.back.value_or(1.70158));
       if (easing.ease == Ease::Elastic) {
         fmt::format_to(out, ", \"amplitude\": {}, \"period\": {}",
-                       factor_ * easing.amplitude.value_or(std::fabs(piece->to - piece->from)),
+                       factor_ * easing.amplitude.value_or(std::fabs(segment->to - segment->from)),
                        easing.period.value_or(0));
       }
       return;
     }
     // The straight line beyond a key follows its handle unless the key is LINEAR.
-    const bool is_line = piece && piece->kind == Piece::Kind::Line && !(is_linear_ && k == 0);
-    const bool is_step = piece && piece->kind == Piece::Kind::Constant;
+    const bool is_line = segment && segment->kind == Segment::Kind::Line && !(is_linear_ && k == 0);
+    const bool is_step = segment && segment->kind == Segment::Kind::Constant;
     fmt::format_to(out, "\"interpolation\": \"{}\", \"easing\": \"AUTO\"",
                    is_step ? "CONSTANT" : (is_line ? "LINEAR" : "BEZIER"));
   }
 
   /// Handles, with `frames` >= 0.
   Arm left_of(std::size_t k) const {
-    if (k == 0) return {1, is_sloped(pieces_.before) ? -pieces_.before.slope : 0};
-    const Piece& piece = pieces_.pieces[k - 1];
-    return piece.kind == Piece::Kind::Bezier ? piece.in : straight(piece, -1);
+    if (k == 0) return {1, is_sloped(segments_.before) ? -segments_.before.slope : 0};
+    const Segment& segment = segments_.segments[k - 1];
+    return segment.kind == Segment::Kind::Bezier ? segment.in : straight(segment, -1);
   }
 
   Arm right_of(std::size_t k) const {
-    if (k == pieces_.pieces.size()) return {1, is_sloped(pieces_.after) ? pieces_.after.slope : 0};
-    const Piece& piece = pieces_.pieces[k];
-    return piece.kind == Piece::Kind::Bezier ? piece.out : straight(piece, 1);
+    if (k == segments_.segments.size())
+      return {1, is_sloped(segments_.after) ? segments_.after.slope : 0};
+    const Segment& segment = segments_.segments[k];
+    return segment.kind == Segment::Kind::Bezier ? segment.out : straight(segment, 1);
   }
 
-  static Arm straight(const Piece& piece, double direction) {
-    const bool is_line = piece.kind == Piece::Kind::Line;
-    return {piece.length() / 3, is_line ? direction * (piece.to - piece.from) / 3 : 0};
+  static Arm straight(const Segment& segment, double direction) {
+    const bool is_line = segment.kind == Segment::Kind::Line;
+    return {segment.length() / 3, is_line ? direction * (segment.to - segment.from) / 3 : 0};
   }
 
-  const Pieces& pieces_;
+  const Segments& segments_;
   double factor_;
   bool is_linear_;
 };
@@ -160,7 +161,7 @@ Result<CurveText> write_blender(const std::vector<ChannelCurve>& curves,
                      "\"{}\",\n",
                      is_first ? "" : ",", json_text(channel->thing), json_text(channel->attribute),
                      index, unit_word(curve.unit));
-      FCurveText(part.pieces, factor).append_to(text, writing.should_stop);
+      FCurveText(part.segments, factor).append_to(text, writing.should_stop);
       if (is_stopped(writing.should_stop)) return interrupted();
       text += "\n    }";
       is_first = false;

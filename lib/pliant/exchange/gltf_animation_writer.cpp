@@ -40,52 +40,53 @@ struct SampledKeys {
   std::vector<SampledKey> keys = {};
 };
 
-bool steps_only(const Pieces& pieces) {
-  for (std::size_t k = 0; k < pieces.pieces.size(); ++k) {
-    const Piece& piece = pieces.pieces[k];
-    if (piece.kind != Piece::Kind::Constant || piece.from != pieces.values[k]) return false;
+bool steps_only(const Segments& segments) {
+  for (std::size_t k = 0; k < segments.segments.size(); ++k) {
+    const Segment& segment = segments.segments[k];
+    if (segment.kind != Segment::Kind::Constant || segment.from != segments.values[k]) return false;
   }
   return true;
 }
 
-/// A cursor through the pieces of a component; beyond them it is constant.
+/// A cursor through the segments of a component; beyond them it is constant.
 class ComponentParts {
  public:
-  explicit ComponentParts(Pieces pieces) : pieces_(std::move(pieces)) {}
+  explicit ComponentParts(Segments segments) : segments_(std::move(segments)) {}
 
-  /// The part over an interval, which contains no key of the pieces. Requires: later than those
+  /// The part over an interval, which contains no key of the segments. Requires: later than those
   /// before.
-  Piece part(double start, double end) {
-    const auto& pieces = pieces_.pieces;
-    while (next_ < pieces.size() && pieces[next_].end <= start) ++next_;
-    if (next_ == pieces.size() || end <= pieces[next_].start) {
-      const double value = next_ == pieces.size() ? pieces_.values.back() : pieces_.values.front();
+  Segment part(double start, double end) {
+    const auto& segments = segments_.segments;
+    while (next_ < segments.size() && segments[next_].end <= start) ++next_;
+    if (next_ == segments.size() || end <= segments[next_].start) {
+      const double value =
+          next_ == segments.size() ? segments_.values.back() : segments_.values.front();
       return {.start = start, .end = end, .from = value, .to = value};
     }
-    Piece piece = pieces[next_];
-    if (piece.start < start) piece = cut(piece, start).right;
-    if (end < piece.end) piece = cut(piece, end).left;
-    return piece;
+    Segment segment = segments[next_];
+    if (segment.start < start) segment = cut(segment, start).right;
+    if (end < segment.end) segment = cut(segment, end).left;
+    return segment;
   }
 
  private:
-  Pieces pieces_;
+  Segments segments_;
   std::size_t next_ = 0;
 };
 
 std::vector<double> frames_of_all(const HeldChannel& channel) {
   std::vector<double> frames;
   for (const HeldComponent& part : channel.components)
-    frames.insert(frames.end(), part.pieces.frames.begin(), part.pieces.frames.end());
+    frames.insert(frames.end(), part.segments.frames.begin(), part.segments.frames.end());
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   return frames;
 }
 
-double value_at_or_before(const Pieces& pieces, double frame) {
-  const auto after = std::upper_bound(pieces.frames.begin(), pieces.frames.end(), frame);
-  if (after == pieces.frames.begin()) return pieces.values.front();
-  return pieces.values[static_cast<std::size_t>(after - pieces.frames.begin()) - 1];
+double value_at_or_before(const Segments& segments, double frame) {
+  const auto after = std::upper_bound(segments.frames.begin(), segments.frames.end(), frame);
+  if (after == segments.frames.begin()) return segments.values.front();
+  return segments.values[static_cast<std::size_t>(after - segments.frames.begin()) - 1];
 }
 
 /// Steps, whose frames may differ between the components.
@@ -94,24 +95,24 @@ SampledKeys sampled_steps(const HeldChannel& channel) {
   for (const double frame : frames_of_all(channel)) {
     SampledKey key{.frame = frame};
     for (std::size_t c = 0; c < channel.components.size(); ++c)
-      key.value[c] = value_at_or_before(channel.components[c].pieces, frame);
+      key.value[c] = value_at_or_before(channel.components[c].segments, frame);
     result.keys.push_back(key);
   }
   return result;
 }
 
-SampledKeys sampled_pieces(const HeldChannel& channel) {
+SampledKeys sampled_segments(const HeldChannel& channel) {
   SampledKeys result;
   const std::vector<double> frames = frames_of_all(channel);
   for (const double frame : frames) result.keys.push_back({.frame = frame});
   bool are_lines = true;
   for (std::size_t c = 0; c < channel.components.size(); ++c) {
-    const Pieces& pieces = channel.components[c].pieces;
-    ComponentParts parts(pieces);
-    for (const Piece& piece : pieces.pieces)
-      are_lines = are_lines && piece.kind != Piece::Kind::Bezier;
+    const Segments& segments = channel.components[c].segments;
+    ComponentParts parts(segments);
+    for (const Segment& segment : segments.segments)
+      are_lines = are_lines && segment.kind != Segment::Kind::Bezier;
     for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
-      const Piece part = parts.part(frames[k], frames[k + 1]);
+      const Segment part = parts.part(frames[k], frames[k + 1]);
       result.keys[k].value[c] = part.from;
       result.keys[k + 1].value[c] = part.to;
       result.keys[k].out[c] = slope_at_start(part);
@@ -124,7 +125,7 @@ SampledKeys sampled_pieces(const HeldChannel& channel) {
 
 bool all_step(const HeldChannel& channel) {
   return std::all_of(channel.components.begin(), channel.components.end(),
-                     [](const HeldComponent& part) { return steps_only(part.pieces); });
+                     [](const HeldComponent& part) { return steps_only(part.segments); });
 }
 
 Abilities gltf_abilities(bool has_steps) {
@@ -187,7 +188,7 @@ class GltfCurveWriter {
     }
     for (CurveLoss& loss : losses) result_.losses.push_back(std::move(loss));
     if (is_rotation) return sampled_rotation(curve, *channel, are_steps);
-    return are_steps ? sampled_steps(*channel) : sampled_pieces(*channel);
+    return are_steps ? sampled_steps(*channel) : sampled_segments(*channel);
   }
 
   Result<SampledKeys> sampled_rotation(const ChannelCurve& curve, const HeldChannel& channel,
@@ -226,11 +227,11 @@ class GltfCurveWriter {
     double tolerance = least_rotation_tolerance;
     double first = std::numeric_limits<double>::infinity(), last = -first;
     for (const HeldComponent& part : channel.components) {
-      auto made = Curve<1>::make(exchange::keys_of(part.pieces));
-      PLIANT_EXPECTS(made.has_value());  // pieces of a curve
+      auto made = Curve<1>::make(exchange::keys_of(part.segments));
+      PLIANT_EXPECTS(made.has_value());  // segments of a curve
       tolerance = std::max(tolerance, tolerance_of(*made, writing_));
-      first = std::min(first, part.pieces.frames.front());
-      last = std::max(last, part.pieces.frames.back());
+      first = std::min(first, part.segments.frames.front());
+      last = std::max(last, part.segments.frames.back());
       parts.push_back(*std::move(made));
     }
     if (const double fastest = turn_within(parts, first, last); fastest > 360 * 1000) {
@@ -244,7 +245,7 @@ class GltfCurveWriter {
     };
     // A quaternion of unit length that is off by d turns by up to 2·d radians.
     constexpr double degrees_per_unit = 2 * 180 / 3.14159265358979323846;
-    Quaternion beside = at(channel.components[0].pieces.frames.front(), {0, 0, 0, 1});
+    Quaternion beside = at(channel.components[0].segments.frames.front(), {0, 0, 0, 1});
     double deviation = 0;
     const std::vector<double> frames = frames_of_all(channel);
     for (std::size_t k = 0; k + 1 < frames.size(); ++k) {

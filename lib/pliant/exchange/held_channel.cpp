@@ -23,7 +23,7 @@ Result<HeldChannel> held_channel(const ChannelCurve& curve, const Abilities& abi
   HeldChannel channel{thing, attribute, {}};
   const auto add = [&](const Curve<1>& part, int component) -> Result<void> {
     const std::string name = curve.channel + component_suffix(component);
-    auto held = hold(pieces_of(part), abilities, tolerance_of(part, writing),
+    auto held = hold(segments_of(part), abilities, tolerance_of(part, writing),
                      {writing.first, writing.last}, writing.should_stop);
     if (!held && held.error().code == ErrorCode::Interrupted) return fail(held.error());
     if (!held) {
@@ -31,7 +31,7 @@ Result<HeldChannel> held_channel(const ChannelCurve& curve, const Abilities& abi
     }
     for (Loss& loss : held->losses)
       losses.push_back({name, std::move(loss.message), loss.is_exact});
-    channel.components.push_back({component, std::move(held->pieces)});
+    channel.components.push_back({component, std::move(held->segments)});
     return {};
   };
   if (const auto* number = std::get_if<Curve<1>>(&curve.curve)) {

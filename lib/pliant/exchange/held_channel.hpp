@@ -12,7 +12,7 @@ namespace pliant::exchange {
 /// One component of a channel as a format can hold it.
 struct HeldComponent {
   int component = -1;  ///< -1: the channel has only one
-  Pieces pieces;
+  Segments segments;
 };
 
 /// A channel as a format can hold it.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double largest_held_frame = 1e7;
 constexpr double largest_held_value = 1e30;
-constexpr double shortest_held_piece = 1e-6;
+constexpr double shortest_held_segment = 1e-6;
 
 std::string_view name_of(Ease ease) {
   constexpr std::string_view names[] = {"sine", "quad", "cubic", "quart",  "quint",
@@ -36,31 +36,31 @@ std::size_t most_cubics(double length) {
       std::clamp(per_frame * length, for_short_ones, static_cast<double>(most_fitted)));
 }
 
-std::optional<Error> beyond_bounds(const Pieces& pieces) {
+std::optional<Error> beyond_bounds(const Segments& segments) {
   const auto error = [](std::string message) {
     return Error{ErrorCode::InvalidInput, std::move(message)};
   };
-  for (std::size_t k = 0; k < pieces.frames.size(); ++k) {
-    if (!(std::fabs(pieces.frames[k]) <= largest_held_frame)) {
+  for (std::size_t k = 0; k < segments.frames.size(); ++k) {
+    if (!(std::fabs(segments.frames[k]) <= largest_held_frame)) {
       return error(
           fmt::format("key {} is too far away: frames of other programs reach from {} to {}",
-                      pieces.frames[k], -largest_held_frame, largest_held_frame));
+                      segments.frames[k], -largest_held_frame, largest_held_frame));
     }
-    if (!(std::fabs(pieces.values[k]) <= largest_held_value)) {
+    if (!(std::fabs(segments.values[k]) <= largest_held_value)) {
       return error(fmt::format("the value {} of key {} is too large: its size must not exceed {}",
-                               pieces.values[k], pieces.frames[k], largest_held_value));
+                               segments.values[k], segments.frames[k], largest_held_value));
     }
   }
-  for (const Piece& piece : pieces.pieces) {
-    if (!(piece.length() >= shortest_held_piece)) {
+  for (const Segment& segment : segments.segments) {
+    if (!(segment.length() >= shortest_held_segment)) {
       return error(fmt::format("key {} and key {} are too close: other programs need {} frames",
-                               piece.start, piece.end, shortest_held_piece));
+                               segment.start, segment.end, shortest_held_segment));
     }
-    for (const double number : {piece.from, piece.to, piece.out.value, piece.in.value}) {
+    for (const double number : {segment.from, segment.to, segment.out.value, segment.in.value}) {
       if (std::fabs(number) <= largest_held_value) continue;
       return error(
           fmt::format("the segment of key {} has the value {}: its size must not exceed {}",
-                      piece.start, number, largest_held_value));
+                      segment.start, number, largest_held_value));
     }
   }
   return {};
@@ -68,24 +68,24 @@ std::optional<Error> beyond_bounds(const Pieces& pieces) {
 
 class Holder {
  public:
-  Holder(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
+  Holder(Segments segments, const Abilities& abilities, double tolerance, WantedFrames wanted,
          const StopRequest& should_stop)
-      : pieces_(std::move(pieces)),
+      : segments_(std::move(segments)),
         abilities_(abilities),
         tolerance_(tolerance),
         wanted_(wanted),
         should_stop_(should_stop) {}
 
   Result<Held> hold() {
-    for (const Piece& piece : pieces_.pieces) author_frames_.push_back(piece.start);
-    if (auto error = beyond_bounds(pieces_)) return fail(*std::move(error));
+    for (const Segment& segment : segments_.segments) author_frames_.push_back(segment.start);
+    if (auto error = beyond_bounds(segments_)) return fail(*std::move(error));
     if (auto held = hold_copies(); !held) return fail(held.error());
     hold_lines();
     if (auto held = hold_shapes(); !held) return fail(held.error());
     hold_jumps();
     if (auto held = hold_arms(); !held) return fail(held.error());
-    if (auto error = beyond_bounds(pieces_)) return fail(*std::move(error));
-    return Held{std::move(pieces_), losses_.take()};
+    if (auto error = beyond_bounds(segments_)) return fail(*std::move(error));
+    return Held{std::move(segments_), losses_.take()};
   }
 
  private:
@@ -93,7 +93,7 @@ class Holder {
 
   /// Whether the format shows the same copies.
   bool holds_copies(const Beyond& side) const {
-    const double rise = pieces_.values.back() - pieces_.values.front();
+    const double rise = segments_.values.back() - segments_.values.front();
     if (side.kind == Beyond::Kind::RepeatOffset && side.offset != rise) return false;
     if (std::isinf(side.count)) return abilities_.has_copies;
     if (!abilities_.has_counted_copies) return false;
@@ -101,44 +101,44 @@ class Holder {
            (side.kind == Beyond::Kind::Mirror && std::fmod(side.count, 2) == 0);
   }
 
-  /// Whether a line before or after the keys needs a piece of its own. Copies on the other side
+  /// Whether a line before or after the keys needs a segment of its own. Copies on the other side
   /// would repeat it.
-  bool needs_piece(bool is_before) const {
-    const Beyond& side = is_before ? pieces_.before : pieces_.after;
+  bool needs_segment(bool is_before) const {
+    const Beyond& side = is_before ? segments_.before : segments_.after;
     if (has_copies(side)) return false;
-    const double value = is_before ? pieces_.values.front() : pieces_.values.back();
+    const double value = is_before ? segments_.values.front() : segments_.values.back();
     if (side.anchor != value) return true;
     if (side.slope == 0) return false;
-    if (!abilities_.has_lines || pieces_.pieces.empty()) return true;
-    const Piece& beside = is_before ? pieces_.pieces.front() : pieces_.pieces.back();
-    return abilities_.lines_need_motion && is_before && beside.kind == Piece::Kind::Constant;
+    if (!abilities_.has_lines || segments_.segments.empty()) return true;
+    const Segment& beside = is_before ? segments_.segments.front() : segments_.segments.back();
+    return abilities_.lines_need_motion && is_before && beside.kind == Segment::Kind::Constant;
   }
 
   Result<void> hold_copies() {
-    bool writes_before = has_copies(pieces_.before) && !holds_copies(pieces_.before);
-    bool writes_after = has_copies(pieces_.after) && !holds_copies(pieces_.after);
-    if (needs_piece(true) || writes_before) writes_after = has_copies(pieces_.after);
-    if (needs_piece(false) || writes_after) writes_before = has_copies(pieces_.before);
+    bool writes_before = has_copies(segments_.before) && !holds_copies(segments_.before);
+    bool writes_after = has_copies(segments_.after) && !holds_copies(segments_.after);
+    if (needs_segment(true) || writes_before) writes_after = has_copies(segments_.after);
+    if (needs_segment(false) || writes_after) writes_before = has_copies(segments_.before);
     if (!writes_before && !writes_after) return {};
-    const Pieces own = pieces_;
+    const Segments own = segments_;
     auto written = with_copies(own, writes_before ? std::optional(wanted_.first) : std::nullopt,
                                writes_after ? std::optional(wanted_.last) : std::nullopt);
     if (!written) return fail(written.error());
-    pieces_ = *std::move(written);
+    segments_ = *std::move(written);
     const auto tell = [&](bool is_before, const Beyond& side) {
       const double span = own.frames.back() - own.frames.front();
-      const double reach = is_before ? own.frames.front() - pieces_.frames.front()
-                                     : pieces_.frames.back() - own.frames.back();
+      const double reach = is_before ? own.frames.front() - segments_.frames.front()
+                                     : segments_.frames.back() - own.frames.back();
       const auto copies = static_cast<std::size_t>(std::llround(reach / span));
       const bool are_all = static_cast<double>(copies) >= side.count;
-      const std::size_t keys = copies * own.pieces.size();
+      const std::size_t keys = copies * own.segments.size();
       losses_.add_side(
-          fmt::format(
-              "the copies {} the keys became {} key{}{}", is_before ? "before" : "after", keys,
-              keys == 1 ? "" : "s",
-              are_all ? ""
-                      : fmt::format(", {} frame {}", is_before ? "from" : "up to",
-                                    is_before ? pieces_.frames.front() : pieces_.frames.back())),
+          fmt::format("the copies {} the keys became {} key{}{}", is_before ? "before" : "after",
+                      keys, keys == 1 ? "" : "s",
+                      are_all ? ""
+                              : fmt::format(", {} frame {}", is_before ? "from" : "up to",
+                                            is_before ? segments_.frames.front()
+                                                      : segments_.frames.back())),
           are_all);
     };
     if (writes_before) tell(true, own.before);
@@ -148,9 +148,9 @@ class Holder {
 
   void hold_lines() {
     for (const bool is_before : {true, false}) {
-      if (!needs_piece(is_before)) continue;
-      Beyond& side = is_before ? pieces_.before : pieces_.after;
-      const double end = is_before ? pieces_.frames.front() : pieces_.frames.back();
+      if (!needs_segment(is_before)) continue;
+      Beyond& side = is_before ? segments_.before : segments_.after;
+      const double end = is_before ? segments_.frames.front() : segments_.frames.back();
       double length = 1;
       if (!abilities_.has_lines && side.slope != 0) {
         length = std::max(length, is_before ? end - wanted_.first : wanted_.last - end);
@@ -159,26 +159,26 @@ class Holder {
                         is_before ? "before" : "after", is_before ? end - length : end + length),
             false);
       }
-      Piece piece{.kind = side.slope == 0 ? Piece::Kind::Constant : Piece::Kind::Line};
+      Segment segment{.kind = side.slope == 0 ? Segment::Kind::Constant : Segment::Kind::Line};
       if (is_before) {
-        piece.start = end - length;
-        piece.end = end;
-        piece.to = side.anchor;
-        piece.from = side.anchor - side.slope * length;
-        pieces_.frames.insert(pieces_.frames.begin(), piece.start);
-        pieces_.values.insert(pieces_.values.begin(), piece.from);
-        pieces_.pieces.insert(pieces_.pieces.begin(), piece);
-        side.anchor = piece.from;
+        segment.start = end - length;
+        segment.end = end;
+        segment.to = side.anchor;
+        segment.from = side.anchor - side.slope * length;
+        segments_.frames.insert(segments_.frames.begin(), segment.start);
+        segments_.values.insert(segments_.values.begin(), segment.from);
+        segments_.segments.insert(segments_.segments.begin(), segment);
+        side.anchor = segment.from;
       } else {
-        piece.start = end;
-        piece.end = end + length;
-        piece.key = author_frames_.size();
-        piece.from = side.anchor;
-        piece.to = side.anchor + side.slope * length;
-        pieces_.frames.push_back(piece.end);
-        pieces_.values.push_back(piece.to);
-        pieces_.pieces.push_back(piece);
-        side.anchor = piece.to;
+        segment.start = end;
+        segment.end = end + length;
+        segment.key = author_frames_.size();
+        segment.from = side.anchor;
+        segment.to = side.anchor + side.slope * length;
+        segments_.frames.push_back(segment.end);
+        segments_.values.push_back(segment.to);
+        segments_.segments.push_back(segment);
+        side.anchor = segment.to;
       }
       if (!abilities_.has_lines) side.slope = 0;
     }
@@ -191,197 +191,201 @@ class Holder {
 
   bool jumps_left(std::size_t k) const {
     if (abilities_.has_left_values) return false;
-    const Piece& before = pieces_.pieces[k - 1];
-    if (before.to == pieces_.values[k]) return false;
-    return !(abilities_.has_steps && before.kind == Piece::Kind::Constant);
+    const Segment& before = segments_.segments[k - 1];
+    if (before.to == segments_.values[k]) return false;
+    return !(abilities_.has_steps && before.kind == Segment::Kind::Constant);
   }
 
   bool jumps_right(std::size_t k) const {
-    const Piece& after = pieces_.pieces[k];
-    if (after.from == pieces_.values[k]) return false;
-    return !(abilities_.has_step_next && after.kind == Piece::Kind::Constant &&
-             after.to == pieces_.values[k + 1]);
+    const Segment& after = segments_.segments[k];
+    if (after.from == segments_.values[k]) return false;
+    return !(abilities_.has_step_next && after.kind == Segment::Kind::Constant &&
+             after.to == segments_.values[k + 1]);
   }
 
-  /// The part of a piece from its start or up to its end without `gap` frames at the other end.
-  static Piece without(const Piece& piece, double gap, bool at_start) {
-    PLIANT_EXPECTS(piece.kind != Piece::Kind::Easing);
-    return at_start ? cut(piece, piece.start + gap).right : cut(piece, piece.end - gap).left;
+  /// The part of a segment from its start or up to its end without `gap` frames at the other end.
+  static Segment without(const Segment& segment, double gap, bool at_start) {
+    PLIANT_EXPECTS(segment.kind != Segment::Kind::Easing);
+    return at_start ? cut(segment, segment.start + gap).right
+                    : cut(segment, segment.end - gap).left;
   }
 
   void hold_jumps() {
-    Pieces result;
-    result.before = pieces_.before;
-    result.after = pieces_.after;
+    Segments result;
+    result.before = segments_.before;
+    result.after = segments_.after;
     const auto add_key = [&](double frame, double value) {
       result.frames.push_back(frame);
       result.values.push_back(value);
     };
     const auto add_step = [&](double start, double end, double from, double to, std::size_t key) {
-      Piece step{.start = start, .end = end, .from = from, .to = to, .key = key};
+      Segment step{.start = start, .end = end, .from = from, .to = to, .key = key};
       if (abilities_.has_steps) {
-        step.kind = Piece::Kind::Constant;
+        step.kind = Segment::Kind::Constant;
         step.to = step.from;
       }
-      result.pieces.push_back(step);
+      result.segments.push_back(step);
     };
     const std::string became = fmt::format("became a step of {} frames", abilities_.gap);
-    add_key(pieces_.frames[0], pieces_.values[0]);
-    for (std::size_t k = 0; k < pieces_.pieces.size(); ++k) {
-      Piece piece = pieces_.pieces[k];
+    add_key(segments_.frames[0], segments_.values[0]);
+    for (std::size_t k = 0; k < segments_.segments.size(); ++k) {
+      Segment segment = segments_.segments[k];
       if (jumps_right(k)) {
-        const double gap = gap_at(piece.start, piece.length());
-        const double start = piece.start;
-        piece = without(piece, gap, true);
-        add_step(start, piece.start, pieces_.values[k], piece.from, piece.key);
-        add_key(piece.start, piece.from);
+        const double gap = gap_at(segment.start, segment.length());
+        const double start = segment.start;
+        segment = without(segment, gap, true);
+        add_step(start, segment.start, segments_.values[k], segment.from, segment.key);
+        add_key(segment.start, segment.from);
         losses_.add("jump", became, start, 0, 0, false);
       }
       const bool jumps = jumps_left(k + 1);
-      const double end = piece.end;
-      if (jumps) piece = without(piece, gap_at(end, piece.length()), false);
-      if (!abilities_.has_steps && piece.kind == Piece::Kind::Constant)
-        piece.kind = Piece::Kind::Line;
-      result.pieces.push_back(piece);
+      const double end = segment.end;
+      if (jumps) segment = without(segment, gap_at(end, segment.length()), false);
+      if (!abilities_.has_steps && segment.kind == Segment::Kind::Constant)
+        segment.kind = Segment::Kind::Line;
+      result.segments.push_back(segment);
       if (jumps) {
-        add_key(piece.end, piece.to);
-        add_step(piece.end, end, piece.to, pieces_.values[k + 1], piece.key);
+        add_key(segment.end, segment.to);
+        add_step(segment.end, end, segment.to, segments_.values[k + 1], segment.key);
         losses_.add("jump", became, end, 0, 0, false);
       }
-      add_key(pieces_.frames[k + 1], pieces_.values[k + 1]);
+      add_key(segments_.frames[k + 1], segments_.values[k + 1]);
     }
-    pieces_ = std::move(result);
+    segments_ = std::move(result);
   }
 
-  /// Replaces each piece by the parts that `parts_of` makes of it. Errors: they are too many;
+  /// Replaces each segment by the parts that `parts_of` makes of it. Errors: they are too many;
   /// Interrupted.
   template <class PartsOf>
   Result<void> divide(const PartsOf& parts_of) {
-    Pieces result;
-    result.before = pieces_.before;
-    result.after = pieces_.after;
-    result.frames.push_back(pieces_.frames[0]);
-    result.values.push_back(pieces_.values[0]);
-    for (std::size_t k = 0; k < pieces_.pieces.size(); ++k) {
+    Segments result;
+    result.before = segments_.before;
+    result.after = segments_.after;
+    result.frames.push_back(segments_.frames[0]);
+    result.values.push_back(segments_.values[0]);
+    for (std::size_t k = 0; k < segments_.segments.size(); ++k) {
       if (is_stopped(should_stop_)) return interrupted();
-      for (const Piece& part : parts_of(pieces_.pieces[k], k)) {
-        result.pieces.push_back(part);
+      for (const Segment& part : parts_of(segments_.segments[k], k)) {
+        result.segments.push_back(part);
         result.frames.push_back(part.end);
         result.values.push_back(part.to);
       }
-      if (result.pieces.size() > most_pieces)
-        return invalid(fmt::format("would become more than {} keys", most_pieces));
+      if (result.segments.size() > most_segments)
+        return invalid(fmt::format("would become more than {} keys", most_segments));
       // The curve has this value there, whatever the parts arrive with.
-      result.frames.back() = pieces_.frames[k + 1];
-      result.values.back() = pieces_.values[k + 1];
+      result.frames.back() = segments_.frames[k + 1];
+      result.values.back() = segments_.values[k + 1];
     }
-    pieces_ = std::move(result);
+    segments_ = std::move(result);
     return {};
   }
 
-  static Piece level_of(Piece piece) {
-    piece.kind = Piece::Kind::Line;
-    return piece;
+  static Segment level_of(Segment segment) {
+    segment.kind = Segment::Kind::Line;
+    return segment;
   }
 
   Result<void> hold_shapes() {
-    return divide([this](const Piece& piece, std::size_t k) -> std::vector<Piece> {
-      if (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time &&
+    return divide([this](const Segment& segment, std::size_t k) -> std::vector<Segment> {
+      if (segment.kind == Segment::Kind::Bezier && !segment.is_cubic_in_time &&
           !abilities_.has_long_arms) {
-        const bool is_level = piece.from == piece.to && piece.out.value == 0 && piece.in.value == 0;
-        return is_level ? std::vector{level_of(piece)} : fitted(piece, "Bézier segment");
+        const bool is_level =
+            segment.from == segment.to && segment.out.value == 0 && segment.in.value == 0;
+        return is_level ? std::vector{level_of(segment)} : fitted(segment, "Bézier segment");
       }
-      if (piece.kind == Piece::Kind::Easing)
-        return parts_of_easing(piece, jumps_right(k) || jumps_left(k + 1));
-      return {piece};
+      if (segment.kind == Segment::Kind::Easing)
+        return parts_of_easing(segment, jumps_right(k) || jumps_left(k + 1));
+      return {segment};
     });
   }
 
   Result<void> hold_arms() {
-    return divide([this](const Piece& piece, std::size_t) -> std::vector<Piece> {
-      if (piece.kind != Piece::Kind::Bezier) return {piece};
-      std::vector<Piece> parts = with_short_arms(piece);
+    return divide([this](const Segment& segment, std::size_t) -> std::vector<Segment> {
+      if (segment.kind != Segment::Kind::Bezier) return {segment};
+      std::vector<Segment> parts = with_short_arms(segment);
       if (parts.size() > 1) {
-        losses_.add("overlong Bézier segment", "became", frame_of(piece), parts.size(), 0, true);
+        losses_.add("overlong Bézier segment", "became", frame_of(segment), parts.size(), 0, true);
       }
       if (abilities_.least_arm > 0)
-        for (Piece& part : parts) part = with_arms(part);
+        for (Segment& part : parts) part = with_arms(part);
       return parts;
     });
   }
 
   /// One that is cut for a jump is no easing any more.
-  std::vector<Piece> parts_of_easing(const Piece& piece, bool is_cut) {
-    if (!is_cut && abilities_.has_easing && abilities_.has_easing(piece)) return {piece};
-    if (piece.from == piece.to) return {level_of(piece)};
-    const std::string name = fmt::format("{} easing", name_of(piece.easing.ease));
-    if (auto parts = cubics_of(piece)) {
-      if (parts->size() > 1) losses_.add(name, "became", frame_of(piece), parts->size(), 0, true);
+  std::vector<Segment> parts_of_easing(const Segment& segment, bool is_cut) {
+    if (!is_cut && abilities_.has_easing && abilities_.has_easing(segment)) return {segment};
+    if (segment.from == segment.to) return {level_of(segment)};
+    const std::string name = fmt::format("{} easing", name_of(segment.easing.ease));
+    if (auto parts = cubics_of(segment)) {
+      if (parts->size() > 1) losses_.add(name, "became", frame_of(segment), parts->size(), 0, true);
       return *std::move(parts);
     }
-    if (piece.easing.ease == Ease::Circ && abilities_.has_long_arms) return arcs_of(piece, name);
-    return fitted(piece, name);
+    if (segment.easing.ease == Ease::Circ && abilities_.has_long_arms)
+      return arcs_of(segment, name);
+    return fitted(segment, name);
   }
 
-  double frame_of(const Piece& piece) const {
-    return piece.key < author_frames_.size() ? author_frames_[piece.key] : piece.start;
+  double frame_of(const Segment& segment) const {
+    return segment.key < author_frames_.size() ? author_frames_[segment.key] : segment.start;
   }
 
   /// The exact cubics of an easing that consists of some.
-  static std::optional<std::vector<Piece>> cubics_of(const Piece& piece) {
-    const Curve<1> curve = curve_of(piece);
-    const Piece whole = cubic_piece(piece.start, piece.end, piece.from, piece.to,
-                                    slope_at_start(piece), slope_at_end(piece));
-    const bool is_cubic = piece.easing.side != EaseSide::InOut &&
-                          (piece.easing.ease == Ease::Quad || piece.easing.ease == Ease::Cubic ||
-                           piece.easing.ease == Ease::Back);
+  static std::optional<std::vector<Segment>> cubics_of(const Segment& segment) {
+    const Curve<1> curve = curve_of(segment);
+    const Segment whole = cubic_segment(segment.start, segment.end, segment.from, segment.to,
+                                        slope_at_start(segment), slope_at_end(segment));
+    const bool is_cubic = segment.easing.side != EaseSide::InOut &&
+                          (segment.easing.ease == Ease::Quad ||
+                           segment.easing.ease == Ease::Cubic || segment.easing.ease == Ease::Back);
     if (is_cubic) {
-      std::vector<Piece> one = {whole};
-      one[0].key = piece.key;
+      std::vector<Segment> one = {whole};
+      one[0].key = segment.key;
       return one;
     }
-    const auto inserted = insert_key(curve, piece.start + piece.length() / 2);
+    const auto inserted = insert_key(curve, segment.start + segment.length() / 2);
     if (!inserted) return {};
-    std::vector<Piece> parts = pieces_of(*inserted).pieces;
-    for (Piece& part : parts) part.key = piece.key;
+    std::vector<Segment> parts = segments_of(*inserted).segments;
+    for (Segment& part : parts) part.key = segment.key;
     return parts;
   }
 
   /// A quarter of an ellipse as Bézier arcs. Source: Riškus, Approximation of a cubic Bézier curve
   /// by circular arcs and vice versa: handles of 4/3·tan(angle/4).
-  std::vector<Piece> arcs_of(const Piece& piece, const std::string& name) {
-    std::vector<Piece> best;
+  std::vector<Segment> arcs_of(const Segment& segment, const std::string& name) {
+    std::vector<Segment> best;
     double deviation = 0;
     for (int count = 2; count <= 64; count *= 2) {
-      best = arcs(piece, count);
-      deviation = deviation_of(best, piece);
+      best = arcs(segment, count);
+      deviation = deviation_of(best, segment);
       if (deviation <= 0.8 * tolerance_) break;
     }
-    losses_.add(name, "became", frame_of(piece), best.size(), deviation, false);
+    losses_.add(name, "became", frame_of(segment), best.size(), deviation, false);
     return best;
   }
 
-  static std::vector<Piece> arcs(const Piece& piece, int count) {
-    if (piece.easing.side == EaseSide::InOut) {
-      const double middle = piece.start + piece.length() / 2;
-      const double half = piece.from + (piece.to - piece.from) / 2;
-      std::vector<Piece> parts = quarter(piece, piece.start, middle, piece.from, half, count, true);
-      for (Piece& part : quarter(piece, middle, piece.end, half, piece.to, count, false))
+  static std::vector<Segment> arcs(const Segment& segment, int count) {
+    if (segment.easing.side == EaseSide::InOut) {
+      const double middle = segment.start + segment.length() / 2;
+      const double half = segment.from + (segment.to - segment.from) / 2;
+      std::vector<Segment> parts =
+          quarter(segment, segment.start, middle, segment.from, half, count, true);
+      for (Segment& part : quarter(segment, middle, segment.end, half, segment.to, count, false))
         parts.push_back(part);
       return parts;
     }
-    return quarter(piece, piece.start, piece.end, piece.from, piece.to, count,
-                   piece.easing.side == EaseSide::In);
+    return quarter(segment, segment.start, segment.end, segment.from, segment.to, count,
+                   segment.easing.side == EaseSide::In);
   }
 
   /// In: time = sin a, value = 1 - cos a; Out is the same turned by half a turn.
-  static std::vector<Piece> quarter(const Piece& piece, double start, double end, double from,
-                                    double to, int count, bool is_in) {
+  static std::vector<Segment> quarter(const Segment& segment, double start, double end, double from,
+                                      double to, int count, bool is_in) {
     const double step = std::numbers::pi / 2 / count;
     const double reach = 4.0 / 3 * std::tan(step / 4);
     const double length = end - start;
     const double rise = to - from;
-    std::vector<Piece> parts;
+    std::vector<Segment> parts;
     for (int k = 0; k < count; ++k) {
       const int n = is_in ? k : count - k - 1;  // counted from the level end
       const auto at = [&](int place) {
@@ -393,7 +397,7 @@ class Holder {
       const auto [far_sine, far_cosine] = at(n + 1);
       const Arm near{reach * near_cosine * length, reach * near_sine * rise};
       const Arm far{reach * far_cosine * length, -reach * far_sine * rise};
-      Piece part{.kind = Piece::Kind::Bezier, .key = piece.key};
+      Segment part{.kind = Segment::Kind::Bezier, .key = segment.key};
       if (is_in) {
         part.start = k == 0 ? start : start + near_sine * length;
         part.end = k + 1 == count ? end : start + far_sine * length;
@@ -414,78 +418,79 @@ class Holder {
     return parts;
   }
 
-  std::vector<Piece> with_short_arms(const Piece& piece) {
-    const double most = piece.length() * (1 + 1e-15);
-    if (abilities_.has_bold_arms || (piece.out.frames <= most && piece.in.frames <= most))
-      return {piece};
-    const Cut parts = cut_where_slowest(piece);
-    const double least = std::max(1e-5 * piece.length(), 4 * shortest_held_piece);
+  std::vector<Segment> with_short_arms(const Segment& segment) {
+    const double most = segment.length() * (1 + 1e-15);
+    if (abilities_.has_bold_arms || (segment.out.frames <= most && segment.in.frames <= most))
+      return {segment};
+    const Cut parts = cut_where_slowest(segment);
+    const double least = std::max(1e-5 * segment.length(), 4 * shortest_held_segment);
     if (parts.left.length() > least && parts.right.length() > least)
       return {parts.left, parts.right};
     // Almost at an end: as Blender itself does.
-    Piece result = piece;
+    Segment result = segment;
     for (Arm* const arm : {&result.out, &result.in}) {
-      if (arm->frames <= piece.length()) continue;
-      arm->value *= piece.length() / arm->frames;
-      arm->frames = piece.length();
+      if (arm->frames <= segment.length()) continue;
+      arm->value *= segment.length() / arm->frames;
+      arm->frames = segment.length();
     }
-    losses_.add("overlong handle", "was shortened", frame_of(piece), 0,
-                deviation_of({result}, piece), false);
+    losses_.add("overlong handle", "was shortened", frame_of(segment), 0,
+                deviation_of({result}, segment), false);
     return {result};
   }
 
   /// Handles of no length are lengthened along the way that the curve takes from there.
-  Piece with_arms(const Piece& piece) {
-    const double least = abilities_.least_arm * piece.length();
+  Segment with_arms(const Segment& segment) {
+    const double least = abilities_.least_arm * segment.length();
     const auto is_short = [&](const Arm& arm) { return arm.frames == 0 && arm.value == 0; };
-    if (!is_short(piece.out) && !is_short(piece.in)) return piece;
-    Piece result = piece;
+    if (!is_short(segment.out) && !is_short(segment.in)) return segment;
+    Segment result = segment;
     result.is_cubic_in_time = false;
-    const double slope = (piece.to - piece.from) / piece.length();
-    if (is_short(piece.out)) result.out = {least, slope * least};
-    if (is_short(piece.in)) result.in = {least, -slope * least};
-    losses_.add("empty handle", "was lengthened", frame_of(piece), 0, deviation_of({result}, piece),
-                false);
+    const double slope = (segment.to - segment.from) / segment.length();
+    if (is_short(segment.out)) result.out = {least, slope * least};
+    if (is_short(segment.in)) result.in = {least, -slope * least};
+    losses_.add("empty handle", "was lengthened", frame_of(segment), 0,
+                deviation_of({result}, segment), false);
     return result;
   }
 
-  std::vector<Piece> fitted(const Piece& piece, const std::string& name) {
-    const Curve<1> curve = curve_of(piece);
+  std::vector<Segment> fitted(const Segment& segment, const std::string& name) {
+    const Curve<1> curve = curve_of(segment);
     // An elastic jumps at its quiet end, by up to a thousandth of its change.
     const auto limit = [&](double end, double step, double value) {
       const double beside = curve.value(end + step)[0];
-      const bool jumps = piece.kind == Piece::Kind::Easing && piece.easing.ease == Ease::Elastic &&
+      const bool jumps = segment.kind == Segment::Kind::Easing &&
+                         segment.easing.ease == Ease::Elastic &&
                          std::fabs(beside - value) > 0.1 * tolerance_;
       return Value<1>{jumps ? beside : value};
     };
-    const Value<1> from = limit(piece.start, 1e-8 * piece.length(), piece.from);
-    const Value<1> to = limit(piece.end, -1e-8 * piece.length(), piece.to);
+    const Value<1> from = limit(segment.start, 1e-8 * segment.length(), segment.from);
+    const Value<1> to = limit(segment.end, -1e-8 * segment.length(), segment.to);
     const SmoothFunction<1> function{[&](double frame) {
-                                       if (frame == piece.start) return from;
-                                       return frame == piece.end ? to : curve.value(frame);
+                                       if (frame == segment.start) return from;
+                                       return frame == segment.end ? to : curve.value(frame);
                                      },
                                      [&](double frame) { return curve.velocity(frame); },
                                      [&](double frame) { return curve.left_velocity(frame); }};
-    const double shortest = std::min(1.0 / 1024, piece.length() / 1024);
+    const double shortest = std::min(1.0 / 1024, segment.length() / 1024);
     const Fit<1> fit =
-        Fitter<1>(function, tolerance_, shortest, most_cubics(piece.length()), should_stop_)
-            .fit(piece.start, piece.end);
-    if (fit.is_stopped) return {piece};
-    std::vector<Piece> parts;
+        Fitter<1>(function, tolerance_, shortest, most_cubics(segment.length()), should_stop_)
+            .fit(segment.start, segment.end);
+    if (fit.is_stopped) return {segment};
+    std::vector<Segment> parts;
     for (const FittedCubic<1>& cubic : fit.cubics) {
-      parts.push_back(cubic_piece(cubic.start, cubic.end, cubic.from[0], cubic.to[0],
-                                  cubic.from_slope[0], cubic.to_slope[0]));
-      parts.back().key = piece.key;
+      parts.push_back(cubic_segment(cubic.start, cubic.end, cubic.from[0], cubic.to[0],
+                                    cubic.from_slope[0], cubic.to_slope[0]));
+      parts.back().key = segment.key;
     }
-    losses_.add(name, fit.is_close ? "became" : "changed too fast and became", frame_of(piece),
+    losses_.add(name, fit.is_close ? "became" : "changed too fast and became", frame_of(segment),
                 parts.size(), fit.deviation, false);
     return parts;
   }
 
-  static double deviation_of(const std::vector<Piece>& parts, const Piece& piece) {
-    const Curve<1> exact = curve_of(piece);
+  static double deviation_of(const std::vector<Segment>& parts, const Segment& segment) {
+    const Curve<1> exact = curve_of(segment);
     double largest = 0;
-    for (const Piece& part : parts) {
+    for (const Segment& part : parts) {
       const Curve<1> curve = curve_of(part);
       constexpr int steps = 48;
       for (int k = 1; k < steps; ++k) {
@@ -496,7 +501,7 @@ class Holder {
     return largest;
   }
 
-  Pieces pieces_;
+  Segments segments_;
   const Abilities& abilities_;
   double tolerance_;
   WantedFrames wanted_;
@@ -507,9 +512,9 @@ class Holder {
 
 }  // namespace
 
-Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
-                  const StopRequest& should_stop) {
-  auto held = Holder(std::move(pieces), abilities, tolerance, wanted, should_stop).hold();
+Result<Held> hold(Segments segments, const Abilities& abilities, double tolerance,
+                  WantedFrames wanted, const StopRequest& should_stop) {
+  auto held = Holder(std::move(segments), abilities, tolerance, wanted, should_stop).hold();
   if (held && is_stopped(should_stop)) return interrupted();
   return held;
 }

@@ -6,7 +6,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/exchange/pieces.hpp"
+#include "pliant/exchange/segments.hpp"
 
 namespace pliant::exchange {
 
@@ -20,7 +20,7 @@ struct Abilities {
   bool lines_need_motion = false;   ///< but none beside a constant segment
   bool has_copies = true;           ///< endless copies
   bool has_counted_copies = false;  ///< `repeat` with a count, `mirror` with an even one
-  std::function<bool(const Piece& easing)> has_easing = {};  ///< null: none
+  std::function<bool(const Segment& easing)> has_easing = {};  ///< null: none
   double least_arm = 0;       ///< a handle must not be shorter than this share of its segment
   bool has_bold_arms = true;  ///< a handle may be longer than its segment
   double gap = 1.0 / 1024;    ///< how long a jump takes [frames]
@@ -34,7 +34,7 @@ struct Loss {
 
 /// A curve as a format can hold it.
 struct Held {
-  Pieces pieces;
+  Segments segments;
   std::vector<Loss> losses;  ///< one for each kind
 };
 
@@ -44,13 +44,13 @@ struct WantedFrames {
   double last = 0;
 };
 
-/// Changes pieces into those that a format can hold. Where it cannot hold the shape of one, cubics
-/// in time replace it, which deviate by at most `tolerance` [unit], or by what is told if a segment
-/// changes too fast for 1024 of them and for 16 a frame; jumps take `gap` frames; copies
+/// Changes segments into those that a format can hold. Where it cannot hold the shape of one,
+/// cubics in time replace it, which deviate by at most `tolerance` [unit], or by what is told if a
+/// segment changes too fast for 1024 of them and for 16 a frame; jumps take `gap` frames; copies
 /// become keys, endless ones as far as frames are wanted. Errors: numbers that no other program
 /// computes with: frames beyond 1e7, keys closer than 1e-6 frames, values beyond 1e30; more than
-/// `most_pieces`. Interrupted.
-Result<Held> hold(Pieces pieces, const Abilities& abilities, double tolerance, WantedFrames wanted,
-                  const StopRequest& should_stop = {});
+/// `most_segments`. Interrupted.
+Result<Held> hold(Segments segments, const Abilities& abilities, double tolerance,
+                  WantedFrames wanted, const StopRequest& should_stop = {});
 
 }  // namespace pliant::exchange

@@ -132,17 +132,17 @@ CurveKeys<3> joined_alike(const Components& components, const Value<3>& constant
 
 bool has_copies(const Beyond& side) { return side.kind != Beyond::Kind::Line; }
 
-bool is_level(const Pieces& pieces) {
-  const double value = pieces.values.front();
+bool is_level(const Segments& segments) {
+  const double value = segments.values.front();
   const bool are_level =
-      std::all_of(pieces.pieces.begin(), pieces.pieces.end(), [&](const Piece& piece) {
-        return piece.from == value && piece.to == value && piece.out.value == 0 &&
-               piece.in.value == 0 && piece.kind != Piece::Kind::Easing;
+      std::all_of(segments.segments.begin(), segments.segments.end(), [&](const Segment& segment) {
+        return segment.from == value && segment.to == value && segment.out.value == 0 &&
+               segment.in.value == 0 && segment.kind != Segment::Kind::Easing;
       });
   const auto stays = [&](const Beyond& side) {
     return side.kind != Beyond::Kind::Line || (side.slope == 0 && side.anchor == value);
   };
-  return are_level && stays(pieces.before) && stays(pieces.after);
+  return are_level && stays(segments.before) && stays(segments.after);
 }
 
 /// Joins curves whose keys differ: cubics in time, which can be cut anywhere.
@@ -188,25 +188,25 @@ class Joiner {
     const ValueRange<1> range = curve->range(keys.front().frame, keys.back().frame);
     const Abilities abilities{
         .has_left_values = true, .has_long_arms = false, .has_counted_copies = true};
-    auto held = hold(pieces_of(*curve), abilities, tolerance_ * (range.high[0] - range.low[0]),
+    auto held = hold(segments_of(*curve), abilities, tolerance_ * (range.high[0] - range.low[0]),
                      {keys.front().frame, keys.back().frame}, should_stop_);
     if (!held) return fail(held.error());
     for (Loss& loss : held->losses)
       result_.losses.push_back(fmt::format(".{}: {}", "xyz"[c], loss.message));
-    frames_.insert(frames_.end(), held->pieces.frames.begin(), held->pieces.frames.end());
-    pieces_[c] = std::move(held->pieces);
+    frames_.insert(frames_.end(), held->segments.frames.begin(), held->segments.frames.end());
+    segments_[c] = std::move(held->segments);
     return {};
   }
 
   /// Copies must be of the same span; level components show the same with any.
   Result<void> set_side(bool is_before) {
     Extrapolation<3>& side = is_before ? result_.keys.before : result_.keys.after;
-    const Pieces* model = nullptr;
-    for (const auto& pieces : pieces_) {
-      if (!pieces || is_level(*pieces)) continue;
-      const Beyond& own = is_before ? pieces->before : pieces->after;
+    const Segments* model = nullptr;
+    for (const auto& segments : segments_) {
+      if (!segments || is_level(*segments)) continue;
+      const Beyond& own = is_before ? segments->before : segments->after;
       if (!model) {
-        model = &*pieces;
+        model = &*segments;
         continue;
       }
       const Beyond& other = is_before ? model->before : model->after;
@@ -214,15 +214,15 @@ class Joiner {
       if (!are_copies) continue;
       const bool is_same = (own.kind == other.kind || (repeats(own) && repeats(other))) &&
                            own.count == other.count &&
-                           pieces->frames.front() == model->frames.front() &&
-                           pieces->frames.back() == model->frames.back();
+                           segments->frames.front() == model->frames.front() &&
+                           segments->frames.back() == model->frames.back();
       if (!is_same) {
         return invalid(fmt::format(
             "its components have different copies {} the keys, which one vector cannot have; give "
             "them the same, or keys instead",
             is_before ? "before" : "after"));
       }
-      if (own.kind != other.kind && own.kind == Beyond::Kind::RepeatOffset) model = &*pieces;
+      if (own.kind != other.kind && own.kind == Beyond::Kind::RepeatOffset) model = &*segments;
     }
     if (!model) return {};
     const Beyond& own = is_before ? model->before : model->after;
@@ -241,8 +241,8 @@ class Joiner {
     }
     bool is_hold = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      if (!pieces_[c]) continue;
-      const Beyond& line = is_before ? pieces_[c]->before : pieces_[c]->after;
+      if (!segments_[c]) continue;
+      const Beyond& line = is_before ? segments_[c]->before : segments_[c]->after;
       if (has_copies(line)) continue;  // level
       side.slope[c] = line.slope;
       is_hold = is_hold && line.slope == 0;
@@ -258,10 +258,10 @@ class Joiner {
   }
 
   /// The part of a component between two neighbouring frames.
-  Piece part(std::size_t c, std::size_t k) {
+  Segment part(std::size_t c, std::size_t k) {
     const double start = frames_[k], end = frames_[k + 1];
-    if (!pieces_[c]) return level_part(start, end, constant_[c], constant_[c]);
-    const Pieces& own = *pieces_[c];
+    if (!segments_[c]) return level_part(start, end, constant_[c], constant_[c]);
+    const Segments& own = *segments_[c];
     if (start >= own.frames.back()) {
       const auto at = [&](double frame) {
         return own.values.back() + slope_of(own.after) * (frame - own.frames.back());
@@ -276,23 +276,23 @@ class Joiner {
       return level_part(start, end, at(start), at(end));
     }
     std::size_t& next = next_[c];
-    while (own.pieces[next].end <= start) ++next;
-    Piece piece = own.pieces[next];
-    if (piece.start < start) piece = cut(piece, start).right;
-    if (end < piece.end) piece = cut(piece, end).left;
-    return piece;
+    while (own.segments[next].end <= start) ++next;
+    Segment segment = own.segments[next];
+    if (segment.start < start) segment = cut(segment, start).right;
+    if (end < segment.end) segment = cut(segment, end).left;
+    return segment;
   }
 
   static double slope_of(const Beyond& side) { return has_copies(side) ? 0 : side.slope; }
 
-  static Piece level_part(double start, double end, double from, double to) {
+  static Segment level_part(double start, double end, double from, double to) {
     return {.start = start, .end = end, .from = from, .to = to};
   }
 
   /// The value exactly at a frame, `after`: the part that begins there.
-  double value_at(std::size_t c, std::size_t k, const Piece* after) const {
-    if (!pieces_[c]) return constant_[c];
-    const Pieces& own = *pieces_[c];
+  double value_at(std::size_t c, std::size_t k, const Segment* after) const {
+    if (!segments_[c]) return constant_[c];
+    const Segments& own = *segments_[c];
     const auto found = std::lower_bound(own.frames.begin(), own.frames.end(), frames_[k]);
     if (found != own.frames.end() && *found == frames_[k])
       return own.values[static_cast<std::size_t>(found - own.frames.begin())];
@@ -303,7 +303,7 @@ class Joiner {
   void set_key(std::size_t k) {
     Key<3>& key = result_.keys.keys[k];
     const bool is_last = k + 1 == frames_.size();
-    std::array<Piece, 3> parts;
+    std::array<Segment, 3> parts;
     for (std::size_t c = 0; c < 3; ++c) {
       if (!is_last) parts[c] = part(c, k);
       key.value[c] = value_at(c, k, is_last ? nullptr : &parts[c]);
@@ -314,14 +314,14 @@ class Joiner {
     // Before the first key the curve starts from its left value.
     if (k == 0) set_first_left(key);
     if (is_last) return;
-    const auto all = [&](Piece::Kind kind, Piece::Kind or_kind) {
-      return std::all_of(parts.begin(), parts.end(), [&](const Piece& piece) {
-        return piece.kind == kind || piece.kind == or_kind || is_flat(piece);
+    const auto all = [&](Segment::Kind kind, Segment::Kind or_kind) {
+      return std::all_of(parts.begin(), parts.end(), [&](const Segment& segment) {
+        return segment.kind == kind || segment.kind == or_kind || is_flat(segment);
       });
     };
-    if (all(Piece::Kind::Constant, Piece::Kind::Constant)) {
+    if (all(Segment::Kind::Constant, Segment::Kind::Constant)) {
       key.next.kind = Interpolation::Kind::Step;
-    } else if (all(Piece::Kind::Line, Piece::Kind::Constant)) {
+    } else if (all(Segment::Kind::Line, Segment::Kind::Constant)) {
       key.next.kind = Interpolation::Kind::Linear;
     } else {
       Key<3>& next = result_.keys.keys[k + 1];
@@ -334,15 +334,15 @@ class Joiner {
     for (std::size_t c = 0; c < 3; ++c) arrival_[c] = parts[c].to;
   }
 
-  static bool is_flat(const Piece& piece) {
-    return piece.kind == Piece::Kind::Line && piece.from == piece.to;
+  static bool is_flat(const Segment& segment) {
+    return segment.kind == Segment::Kind::Line && segment.from == segment.to;
   }
 
   void set_first_left(Key<3>& key) const {
     Value<3> left = key.value;
     for (std::size_t c = 0; c < 3; ++c) {
-      if (!pieces_[c] || pieces_[c]->frames.front() != key.frame) continue;
-      const Beyond& side = pieces_[c]->before;
+      if (!segments_[c] || segments_[c]->frames.front() != key.frame) continue;
+      const Beyond& side = segments_[c]->before;
       if (!has_copies(side)) left[c] = side.anchor;
     }
     if (left != key.value) key.left = left;
@@ -352,7 +352,7 @@ class Joiner {
   const Value<3>& constant_;
   double tolerance_;
   const StopRequest& should_stop_;
-  std::array<std::optional<Pieces>, 3> pieces_;
+  std::array<std::optional<Segments>, 3> segments_;
   std::array<std::size_t, 3> next_{};
   std::vector<double> frames_;
   Value<3> arrival_{};

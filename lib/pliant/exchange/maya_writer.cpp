@@ -46,15 +46,16 @@ std::string_view infinity_word(const Beyond& side) {
 
 class MayaCurve {
  public:
-  explicit MayaCurve(const Pieces& pieces) : pieces_(pieces) {
-    for (const Piece& piece : pieces.pieces)
-      is_weighted_ = is_weighted_ || (piece.kind == Piece::Kind::Bezier && !piece.is_cubic_in_time);
+  explicit MayaCurve(const Segments& segments) : segments_(segments) {
+    for (const Segment& segment : segments.segments)
+      is_weighted_ =
+          is_weighted_ || (segment.kind == Segment::Kind::Bezier && !segment.is_cubic_in_time);
   }
 
   /// The largest slope that is written as an angle [unit/frame].
   double steepest() const {
     double steepest = 0;
-    for (std::size_t k = 0; k < pieces_.frames.size(); ++k)
+    for (std::size_t k = 0; k < segments_.frames.size(); ++k)
       for (const MayaTangent& tangent : {in_of(k), out_of(k)})
         if (tangent.word == "fixed" && tangent.frames > 0)
           steepest = std::max(steepest, std::fabs(tangent.value) / tangent.frames);
@@ -66,9 +67,9 @@ class MayaCurve {
     fmt::format_to(std::back_inserter(text),
                    "animData {{\n  input time;\n  output {};\n  weighted {};\n  preInfinity {};\n"
                    "  postInfinity {};\n  keys {{\n",
-                   output, is_weighted_ ? 1 : 0, infinity_word(pieces_.before),
-                   infinity_word(pieces_.after));
-    for (std::size_t k = 0; k < pieces_.frames.size() && !is_stopped(should_stop, k); ++k)
+                   output, is_weighted_ ? 1 : 0, infinity_word(segments_.before),
+                   infinity_word(segments_.after));
+    for (std::size_t k = 0; k < segments_.frames.size() && !is_stopped(should_stop, k); ++k)
       append_key(text, k);
     text += "  }\n}\n";
   }
@@ -78,8 +79,8 @@ class MayaCurve {
     const MayaTangent in = in_of(k), out = out_of(k);
     // Locked tangents would turn together.
     const bool are_locked = in.word != "fixed" && out.word != "fixed";
-    fmt::format_to(std::back_inserter(text), "    {} {} {} {} {} 0 0", pieces_.frames[k],
-                   pieces_.values[k], in.word, out.word, are_locked ? 1 : 0);
+    fmt::format_to(std::back_inserter(text), "    {} {} {} {} {} 0 0", segments_.frames[k],
+                   segments_.values[k], in.word, out.word, are_locked ? 1 : 0);
     for (const MayaTangent& tangent : {in, out}) {
       if (tangent.word != "fixed") continue;
       const double angle = std::atan2(tangent.value, tangent.frames) * 180 / std::numbers::pi;
@@ -90,28 +91,28 @@ class MayaCurve {
   }
 
   MayaTangent in_of(std::size_t k) const {
-    if (k == 0) return outer_of(pieces_.before);
-    const Piece& piece = pieces_.pieces[k - 1];
-    if (piece.kind == Piece::Kind::Line) return {"linear"};
-    if (piece.kind != Piece::Kind::Bezier) return {};
-    return fixed(piece, {piece.in.frames, -piece.in.value});
+    if (k == 0) return outer_of(segments_.before);
+    const Segment& segment = segments_.segments[k - 1];
+    if (segment.kind == Segment::Kind::Line) return {"linear"};
+    if (segment.kind != Segment::Kind::Bezier) return {};
+    return fixed(segment, {segment.in.frames, -segment.in.value});
   }
 
   MayaTangent out_of(std::size_t k) const {
-    if (k == pieces_.pieces.size()) return outer_of(pieces_.after);
-    const Piece& piece = pieces_.pieces[k];
-    switch (piece.kind) {
-      case Piece::Kind::Constant:
-        return {piece.from == pieces_.values[k] ? "step" : "stepnext"};
-      case Piece::Kind::Line:
+    if (k == segments_.segments.size()) return outer_of(segments_.after);
+    const Segment& segment = segments_.segments[k];
+    switch (segment.kind) {
+      case Segment::Kind::Constant:
+        return {segment.from == segments_.values[k] ? "step" : "stepnext"};
+      case Segment::Kind::Line:
         return {"linear"};
       default:
-        return fixed(piece, piece.out);
+        return fixed(segment, segment.out);
     }
   }
 
-  static MayaTangent fixed(const Piece& piece, const Arm& arm) {
-    if (piece.is_cubic_in_time && arm.value == 0) return {};  // flat, a third
+  static MayaTangent fixed(const Segment& segment, const Arm& arm) {
+    if (segment.is_cubic_in_time && arm.value == 0) return {};  // flat, a third
     return {"fixed", arm.frames, arm.value};
   }
 
@@ -120,14 +121,14 @@ class MayaCurve {
     return {"fixed", 1, side.slope};
   }
 
-  const Pieces& pieces_;
+  const Segments& segments_;
   bool is_weighted_ = false;
 };
 
-bool jumps_at_joints(const Pieces& pieces) {
+bool jumps_at_joints(const Segments& segments) {
   const bool repeats =
-      pieces.before.kind == Beyond::Kind::Repeat || pieces.after.kind == Beyond::Kind::Repeat;
-  return repeats && pieces.values.front() != pieces.values.back();
+      segments.before.kind == Beyond::Kind::Repeat || segments.after.kind == Beyond::Kind::Repeat;
+  return repeats && segments.values.front() != segments.values.back();
 }
 
 std::string_view output_word(CurveUnit unit) {
@@ -166,12 +167,12 @@ Result<CurveText> write_maya(const std::vector<ChannelCurve>& curves, const Curv
         fmt::format_to(std::back_inserter(text), "anim {}.{}{} {}{} {} 0 0 {};\n", attribute,
                        attribute, letter, attribute, letter, channel->thing, part.component);
       }
-      if (jumps_at_joints(part.pieces)) {
+      if (jumps_at_joints(part.segments)) {
         result.losses.push_back({curve.channel + component_suffix(part.component),
                                  "where its copies meet, pliant has the last value of the one "
                                  "before, Maya the first of the next"});
       }
-      const MayaCurve maya(part.pieces);
+      const MayaCurve maya(part.segments);
       // An angle near 90 degrees leaves few digits of its slope.
       constexpr double digits = 2e-16, least_told = 1e9;
       if (const double steepest = maya.steepest(); steepest > least_told) {

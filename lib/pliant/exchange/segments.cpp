@@ -1,4 +1,4 @@
-#include "pliant/exchange/pieces.hpp"
+#include "pliant/exchange/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,45 +15,45 @@
 namespace pliant::exchange {
 namespace {
 
-using Segments = Interpolation::Kind;
+using InterpolationKind = Interpolation::Kind;
 
 Arm arm_of(const timeline::Handle<1>& handle) { return {handle.frames, handle.value[0]}; }
 
-Piece piece_of(const CurveKeys<1>& keys, const timeline::Track<1>& track, std::size_t k) {
-  const timeline::Segment<1>& segment = track.segments[k];
+Segment segment_of(const CurveKeys<1>& keys, const timeline::Track<1>& track, std::size_t k) {
+  const timeline::Segment<1>& of = track.segments[k];
   const Interpolation& next = keys.keys[k].next;
-  Piece piece{.start = track.frames[k],
-              .end = track.frames[k + 1],
-              .from = track.values[k][0],
-              .to = track.arrivals[k + 1][0],
-              .key = k};
+  Segment segment{.start = track.frames[k],
+                  .end = track.frames[k + 1],
+                  .from = track.values[k][0],
+                  .to = track.arrivals[k + 1][0],
+                  .key = k};
   switch (next.kind) {
-    case Segments::Step:
-      piece.kind = Piece::Kind::Constant;
-      piece.to = piece.from;
+    case InterpolationKind::Step:
+      segment.kind = Segment::Kind::Constant;
+      segment.to = segment.from;
       break;
-    case Segments::StepNext:
-      piece.kind = Piece::Kind::Constant;
-      piece.from = piece.to;
+    case InterpolationKind::StepNext:
+      segment.kind = Segment::Kind::Constant;
+      segment.from = segment.to;
       break;
-    case Segments::Linear:
-      piece.kind = Piece::Kind::Line;
+    case InterpolationKind::Linear:
+      segment.kind = Segment::Kind::Line;
       break;
-    case Segments::Easing:
-      piece.kind = Piece::Kind::Easing;
-      piece.easing = next;
+    case InterpolationKind::Easing:
+      segment.kind = Segment::Kind::Easing;
+      segment.easing = next;
       break;
-    case Segments::Bezier:
-    case Segments::CubicBezier: {
-      piece.kind = Piece::Kind::Bezier;
+    case InterpolationKind::Bezier:
+    case InterpolationKind::CubicBezier: {
+      segment.kind = Segment::Kind::Bezier;
       const timeline::Handles<1> handles = timeline::handles_of(track, k);
-      piece.out = arm_of(handles.start);
-      piece.in = arm_of(handles.end);
-      piece.is_cubic_in_time = segment.kind == timeline::Segment<1>::Kind::Cubic;
+      segment.out = arm_of(handles.start);
+      segment.in = arm_of(handles.end);
+      segment.is_cubic_in_time = of.kind == timeline::Segment<1>::Kind::Cubic;
       break;
     }
   }
-  return piece;
+  return segment;
 }
 
 Beyond beyond_of(const timeline::Outside<1>& outside, const Extrapolation<1>& author) {
@@ -70,9 +70,9 @@ Beyond beyond_of(const timeline::Outside<1>& outside, const Extrapolation<1>& au
   return beyond;
 }
 
-Tangent<1> tangent_of(const Arm& arm, bool is_out, const Piece& piece) {
-  if (piece.is_cubic_in_time) {
-    const double slope = 3 * arm.value / piece.length();
+Tangent<1> tangent_of(const Arm& arm, bool is_out, const Segment& segment) {
+  if (segment.is_cubic_in_time) {
+    const double slope = 3 * arm.value / segment.length();
     return {.kind = Tangent<1>::Kind::Slope, .slope = {is_out ? slope : -slope}};
   }
   return {.kind = Tangent<1>::Kind::Handle,
@@ -85,19 +85,19 @@ EaseSide opposite(EaseSide side) {
   return side == EaseSide::In ? EaseSide::Out : EaseSide::In;
 }
 
-/// The piece run backwards about a frame.
-Piece mirrored(const Piece& piece, double pivot) {
-  Piece result = piece;
-  result.start = 2 * pivot - piece.end;
-  result.end = 2 * pivot - piece.start;
+/// The segment run backwards about a frame.
+Segment mirrored(const Segment& segment, double pivot) {
+  Segment result = segment;
+  result.start = 2 * pivot - segment.end;
+  result.end = 2 * pivot - segment.start;
   std::swap(result.from, result.to);
   std::swap(result.out, result.in);
-  result.easing.side = opposite(piece.easing.side);
+  result.easing.side = opposite(segment.easing.side);
   return result;
 }
 
-Piece moved(const Piece& piece, double frames, double rise) {
-  Piece result = piece;
+Segment moved(const Segment& segment, double frames, double rise) {
+  Segment result = segment;
   result.start += frames;
   result.end += frames;
   result.from += rise;
@@ -105,14 +105,14 @@ Piece moved(const Piece& piece, double frames, double rise) {
   return result;
 }
 
-/// One copy of all pieces, `copy` >= 1 counted away from them.
+/// One copy of all segments, `copy` >= 1 counted away from them.
 struct CopyRow {
   std::vector<double> frames;
   std::vector<double> values;
-  std::vector<Piece> pieces;
+  std::vector<Segment> segments;
 };
 
-CopyRow copy_of(const Pieces& own, const Beyond& side, bool is_before, double copy) {
+CopyRow copy_of(const Segments& own, const Beyond& side, bool is_before, double copy) {
   CopyRow row;
   const double span = own.frames.back() - own.frames.front();
   const double direction = is_before ? -1 : 1;
@@ -124,75 +124,76 @@ CopyRow copy_of(const Pieces& own, const Beyond& side, bool is_before, double co
     for (std::size_t k = own.frames.size(); k-- > 0;) {
       row.frames.push_back(2 * pivot - own.frames[k]);
       row.values.push_back(own.values[k]);
-      if (k > 0) row.pieces.push_back(mirrored(own.pieces[k - 1], pivot));
+      if (k > 0) row.segments.push_back(mirrored(own.segments[k - 1], pivot));
     }
     return row;
   }
   for (std::size_t k = 0; k < own.frames.size(); ++k) {
     row.frames.push_back(own.frames[k] + frames);
     row.values.push_back(own.values[k] + rise);
-    if (k > 0) row.pieces.push_back(moved(own.pieces[k - 1], frames, rise));
+    if (k > 0) row.segments.push_back(moved(own.segments[k - 1], frames, rise));
   }
   return row;
 }
 
 }  // namespace
 
-Pieces pieces_of(const Curve<1>& curve) {
+Segments segments_of(const Curve<1>& curve) {
   auto keys = timeline::without_loop(curve.keys());
   PLIANT_EXPECTS(keys.has_value());  // it compiled before
   const auto compiled = timeline::compile(*keys);
   PLIANT_EXPECTS(compiled.has_value());
   const timeline::Track<1>& track = compiled->curve.track;
-  Pieces pieces;
-  pieces.frames = track.frames;
-  for (const Value<1>& value : track.values) pieces.values.push_back(value[0]);
+  Segments segments;
+  segments.frames = track.frames;
+  for (const Value<1>& value : track.values) segments.values.push_back(value[0]);
   for (std::size_t k = 0; k < track.segments.size(); ++k)
-    pieces.pieces.push_back(piece_of(*keys, track, k));
-  pieces.before = beyond_of(compiled->curve.before, keys->before);
-  pieces.after = beyond_of(compiled->curve.after, keys->after);
-  return pieces;
+    segments.segments.push_back(segment_of(*keys, track, k));
+  segments.before = beyond_of(compiled->curve.before, keys->before);
+  segments.after = beyond_of(compiled->curve.after, keys->after);
+  return segments;
 }
 
-CurveKeys<1> keys_of(const Pieces& pieces) {
+CurveKeys<1> keys_of(const Segments& segments) {
   CurveKeys<1> keys;
-  for (std::size_t k = 0; k < pieces.frames.size(); ++k)
-    keys.keys.push_back({.frame = pieces.frames[k], .value = {pieces.values[k]}});
-  for (std::size_t k = 0; k < pieces.pieces.size(); ++k) {
-    const Piece& piece = pieces.pieces[k];
+  for (std::size_t k = 0; k < segments.frames.size(); ++k)
+    keys.keys.push_back({.frame = segments.frames[k], .value = {segments.values[k]}});
+  for (std::size_t k = 0; k < segments.segments.size(); ++k) {
+    const Segment& segment = segments.segments[k];
     Key<1>& key = keys.keys[k];
-    switch (piece.kind) {
-      case Piece::Kind::Constant:
-        key.next.kind = piece.from == key.value[0] ? Segments::Step : Segments::StepNext;
+    switch (segment.kind) {
+      case Segment::Kind::Constant:
+        key.next.kind =
+            segment.from == key.value[0] ? InterpolationKind::Step : InterpolationKind::StepNext;
         break;
-      case Piece::Kind::Line:
-        key.next.kind = Segments::Linear;
+      case Segment::Kind::Line:
+        key.next.kind = InterpolationKind::Linear;
         break;
-      case Piece::Kind::Bezier:
-        key.out = tangent_of(piece.out, true, piece);
-        keys.keys[k + 1].in = tangent_of(piece.in, false, piece);
+      case Segment::Kind::Bezier:
+        key.out = tangent_of(segment.out, true, segment);
+        keys.keys[k + 1].in = tangent_of(segment.in, false, segment);
         break;
-      case Piece::Kind::Easing:
-        key.next = piece.easing;
+      case Segment::Kind::Easing:
+        key.next = segment.easing;
         break;
     }
-    const bool is_step = key.next.kind == Segments::Step;
-    if (!is_step && piece.to != pieces.values[k + 1]) keys.keys[k + 1].left = {{piece.to}};
+    const bool is_step = key.next.kind == InterpolationKind::Step;
+    if (!is_step && segment.to != segments.values[k + 1]) keys.keys[k + 1].left = {{segment.to}};
   }
   return keys;
 }
 
-Curve<1> curve_of(const Piece& piece) {
-  auto curve = Curve<1>::make(
-      keys_of({{piece.start, piece.end}, {piece.from, piece.to}, {piece}, Beyond{}, Beyond{}}));
+Curve<1> curve_of(const Segment& segment) {
+  auto curve = Curve<1>::make(keys_of(
+      {{segment.start, segment.end}, {segment.from, segment.to}, {segment}, Beyond{}, Beyond{}}));
   PLIANT_EXPECTS(curve.has_value());  // a part of a curve is one
   return *std::move(curve);
 }
 
-Piece cubic_piece(double start, double end, double from, double to, double from_slope,
-                  double to_slope) {
+Segment cubic_segment(double start, double end, double from, double to, double from_slope,
+                      double to_slope) {
   const double third = (end - start) / 3;
-  return {.kind = Piece::Kind::Bezier,
+  return {.kind = Segment::Kind::Bezier,
           .start = start,
           .end = end,
           .from = from,
@@ -202,29 +203,29 @@ Piece cubic_piece(double start, double end, double from, double to, double from_
           .is_cubic_in_time = true};
 }
 
-double slope_at_start(const Piece& piece) {
-  if (piece.kind == Piece::Kind::Constant) return 0;
-  if (piece.kind == Piece::Kind::Line) return (piece.to - piece.from) / piece.length();
-  if (piece.is_cubic_in_time) return 3 * piece.out.value / piece.length();
-  return curve_of(piece).velocity(piece.start)[0];
+double slope_at_start(const Segment& segment) {
+  if (segment.kind == Segment::Kind::Constant) return 0;
+  if (segment.kind == Segment::Kind::Line) return (segment.to - segment.from) / segment.length();
+  if (segment.is_cubic_in_time) return 3 * segment.out.value / segment.length();
+  return curve_of(segment).velocity(segment.start)[0];
 }
 
-double slope_at_end(const Piece& piece) {
-  if (piece.kind == Piece::Kind::Constant) return 0;
-  if (piece.kind == Piece::Kind::Line) return (piece.to - piece.from) / piece.length();
-  if (piece.is_cubic_in_time) return -3 * piece.in.value / piece.length();
-  return curve_of(piece).left_velocity(piece.end)[0];
+double slope_at_end(const Segment& segment) {
+  if (segment.kind == Segment::Kind::Constant) return 0;
+  if (segment.kind == Segment::Kind::Line) return (segment.to - segment.from) / segment.length();
+  if (segment.is_cubic_in_time) return -3 * segment.in.value / segment.length();
+  return curve_of(segment).left_velocity(segment.end)[0];
 }
 
-Cut cut(const Piece& piece, double frame) {
-  PLIANT_EXPECTS(piece.kind != Piece::Kind::Easing);
-  PLIANT_EXPECTS(piece.start < frame && frame < piece.end);
-  Cut parts{piece, piece};
+Cut cut(const Segment& segment, double frame) {
+  PLIANT_EXPECTS(segment.kind != Segment::Kind::Easing);
+  PLIANT_EXPECTS(segment.start < frame && frame < segment.end);
+  Cut parts{segment, segment};
   parts.left.end = parts.right.start = frame;
-  if (piece.kind == Piece::Kind::Constant) return parts;
-  const Curve<1> whole = curve_of(piece);
+  if (segment.kind == Segment::Kind::Constant) return parts;
+  const Curve<1> whole = curve_of(segment);
   parts.left.to = parts.right.from = whole.value(frame)[0];
-  if (piece.kind == Piece::Kind::Line) return parts;
+  if (segment.kind == Segment::Kind::Line) return parts;
   const auto compiled = timeline::compile(whole.keys());
   PLIANT_EXPECTS(compiled.has_value());
   const timeline::Split<1> split = timeline::split(compiled->curve.track, 0, frame);
@@ -238,9 +239,9 @@ Cut cut(const Piece& piece, double frame) {
 // Time over the parameter u has the derivative x' = 3·(a(1-u)² + 2(L-a-b)u(1-u) + bu²), least where
 // x'' = 0. From there to either end it grows, as m + c·s², so that the third of its value at the
 // end, the arm, is at most its mean, the length.
-Cut cut_where_slowest(const Piece& piece) {
-  const double length = piece.length();
-  const double a = piece.out.frames, b = piece.in.frames;
+Cut cut_where_slowest(const Segment& segment) {
+  const double length = segment.length();
+  const double a = segment.out.frames, b = segment.in.frames;
   const double between = length - a - b;
   const double u = (a - between) / (a + b - 2 * between);
   PLIANT_EXPECTS(u > 0 && u < 1);
@@ -257,14 +258,15 @@ Cut cut_where_slowest(const Piece& piece) {
     } parts{start + meeting, first, meeting - second, third - meeting, change - last};
     return parts;
   };
-  const auto time = split(piece.start, a, b, length);
-  const auto value = split(piece.from, piece.out.value, -piece.in.value, piece.to - piece.from);
-  Cut parts{piece, piece};
+  const auto time = split(segment.start, a, b, length);
+  const auto value =
+      split(segment.from, segment.out.value, -segment.in.value, segment.to - segment.from);
+  Cut parts{segment, segment};
   parts.left.end = parts.right.start = time.at;
   parts.left.to = parts.right.from = value.at;
   parts.left.is_cubic_in_time = parts.right.is_cubic_in_time = false;
   // Rounding must not leave an arm longer than its part.
-  const auto arm = [](double frames, double rise, const Piece& part) {
+  const auto arm = [](double frames, double rise, const Segment& part) {
     return Arm{std::clamp(frames, 0.0, part.length()), rise};
   };
   parts.left.out = arm(time.out, value.out, parts.left);
@@ -274,38 +276,38 @@ Cut cut_where_slowest(const Piece& piece) {
   return parts;
 }
 
-Result<Pieces> with_copies(const Pieces& own, std::optional<double> first,
-                           std::optional<double> last) {
+Result<Segments> with_copies(const Segments& own, std::optional<double> first,
+                             std::optional<double> last) {
   const double span = own.frames.back() - own.frames.front();
   const auto copies = [&](const Beyond& side, double reach) {
     return std::min(side.count, std::max(1.0, std::ceil(reach / span)));
   };
   const double before = first ? copies(own.before, own.frames.front() - *first) : 0;
   const double after = last ? copies(own.after, *last - own.frames.back()) : 0;
-  const double count = (before + after) * static_cast<double>(own.pieces.size());
-  if (!(count <= static_cast<double>(most_pieces))) {
+  const double count = (before + after) * static_cast<double>(own.segments.size());
+  if (!(count <= static_cast<double>(most_segments))) {
     return invalid(
         fmt::format("the copies beside the keys would become {} keys; at most {} are allowed",
-                    count, most_pieces));
+                    count, most_segments));
   }
   // A joint has the value of the copy that is nearer to the keys.
-  Pieces result;
+  Segments result;
   const auto add = [&](const CopyRow& row, bool has_first, bool has_last) {
     for (std::size_t k = has_first ? 0 : 1; k + (has_last ? 0 : 1) < row.frames.size(); ++k) {
       result.frames.push_back(row.frames[k]);
       result.values.push_back(row.values[k]);
     }
-    result.pieces.insert(result.pieces.end(), row.pieces.begin(), row.pieces.end());
+    result.segments.insert(result.segments.end(), row.segments.begin(), row.segments.end());
   };
   for (double copy = before; copy >= 1; --copy)
     add(copy_of(own, own.before, true, copy), true, false);
-  add({own.frames, own.values, own.pieces}, true, true);
+  add({own.frames, own.values, own.segments}, true, true);
   for (double copy = 1; copy <= after; ++copy)
     add(copy_of(own, own.after, false, copy), false, true);
-  // Rounding must not leave gaps between pieces and keys.
-  for (std::size_t k = 0; k < result.pieces.size(); ++k) {
-    result.pieces[k].start = result.frames[k];
-    result.pieces[k].end = result.frames[k + 1];
+  // Rounding must not leave gaps between segments and keys.
+  for (std::size_t k = 0; k < result.segments.size(); ++k) {
+    result.segments[k].start = result.frames[k];
+    result.segments[k].end = result.frames[k + 1];
     if (!(result.frames[k] < result.frames[k + 1]))
       return invalid("rounding puts two keys of the copies beside the keys on one frame");
   }

@@ -1,4 +1,4 @@
-#include "pliant/exchange/pieces.hpp"
+#include "pliant/exchange/segments.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,13 +10,13 @@ namespace {
 
 using namespace testing;
 
-double value_of(const Pieces& pieces, double frame) {
-  const auto key = std::lower_bound(pieces.frames.begin(), pieces.frames.end(), frame);
-  if (key != pieces.frames.end() && *key == frame)
-    return pieces.values[static_cast<std::size_t>(key - pieces.frames.begin())];
-  const auto k = static_cast<std::size_t>(key - pieces.frames.begin());
-  const Piece& piece = pieces.pieces[k - 1];
-  return curve_of(piece).value(frame)[0];
+double value_of(const Segments& segments, double frame) {
+  const auto key = std::lower_bound(segments.frames.begin(), segments.frames.end(), frame);
+  if (key != segments.frames.end() && *key == frame)
+    return segments.values[static_cast<std::size_t>(key - segments.frames.begin())];
+  const auto k = static_cast<std::size_t>(key - segments.frames.begin());
+  const Segment& segment = segments.segments[k - 1];
+  return curve_of(segment).value(frame)[0];
 }
 
 TEST_CASE("pieces are the curve between its keys", "[exchange][pieces]") {
@@ -24,17 +24,17 @@ TEST_CASE("pieces are the curve between its keys", "[exchange][pieces]") {
     Whim whim(seed);
     const auto curve = Curve<1>::make(whim.keys(6));
     if (!curve) continue;
-    const Pieces pieces = pieces_of(*curve);
-    const double range = range_of(*curve, pieces.frames.front(), pieces.frames.back());
-    for (std::size_t k = 0; k < pieces.pieces.size(); ++k) {
-      const Piece& piece = pieces.pieces[k];
+    const Segments segments = segments_of(*curve);
+    const double range = range_of(*curve, segments.frames.front(), segments.frames.back());
+    for (std::size_t k = 0; k < segments.segments.size(); ++k) {
+      const Segment& segment = segments.segments[k];
       CAPTURE(seed, k);
-      CHECK(curve->value(pieces.frames[k])[0] == pieces.values[k]);
-      CHECK(std::fabs(curve->left_value(piece.end)[0] - piece.to) <= 1e-15 * (1 + range));
+      CHECK(curve->value(segments.frames[k])[0] == segments.values[k]);
+      CHECK(std::fabs(curve->left_value(segment.end)[0] - segment.to) <= 1e-15 * (1 + range));
       for (int n = 1; n < 20; ++n) {
-        const double frame = piece.start + piece.length() * n / 20;
+        const double frame = segment.start + segment.length() * n / 20;
         const Slack slack{1e-13 * (1 + std::fabs(frame)), 1e-12 * (1 + range)};
-        CHECK(distance_at(*curve, frame, curve_of(piece).value(frame)[0], slack) <= slack.value);
+        CHECK(distance_at(*curve, frame, curve_of(segment).value(frame)[0], slack) <= slack.value);
       }
     }
   }
@@ -50,23 +50,23 @@ TEST_CASE("copies that are written out are those that the curve shows", "[exchan
     if (seed % 3 == 0) keys.after.count = 3;
     const auto curve = Curve<1>::make(keys);
     if (!curve || keys.keys.size() < 2) continue;
-    const Pieces own = pieces_of(*curve);
+    const Segments own = segments_of(*curve);
     const double span = own.frames.back() - own.frames.front();
     const double first = own.frames.front() - 2.5 * span, last = own.frames.back() + 4.5 * span;
-    const auto pieces = with_copies(own, first, last);
-    REQUIRE(pieces.has_value());
-    CHECK(pieces->frames.size() == pieces->pieces.size() + 1);
-    CHECK(pieces->frames.front() <= first);
-    const double end = std::min(last, pieces->frames.back());
+    const auto segments = with_copies(own, first, last);
+    REQUIRE(segments.has_value());
+    CHECK(segments->frames.size() == segments->segments.size() + 1);
+    CHECK(segments->frames.front() <= first);
+    const double end = std::min(last, segments->frames.back());
     const double range = range_of(*curve, first, end);
     for (int n = 0; n <= 300; ++n) {
       const double frame = std::min(first + (end - first) * n / 300, end);
       CAPTURE(static_cast<int>(kind), seed, frame);
       const Slack slack{1e-12 * (1 + std::fabs(first) + std::fabs(end)), 1e-11 * (1 + range)};
-      CHECK(distance_at(*curve, frame, value_of(*pieces, frame), slack) <= slack.value);
+      CHECK(distance_at(*curve, frame, value_of(*segments, frame), slack) <= slack.value);
     }
     if (!keys.after.count) continue;
-    CHECK_THAT(pieces->after.anchor,
+    CHECK_THAT(segments->after.anchor,
                WithinAbs(curve->value(last + 10 * span)[0], 1e-9 * (1 + range)));
   }
 }
@@ -75,28 +75,28 @@ TEST_CASE("a joint of copies has the value of the nearer one", "[exchange][piece
   CurveKeys<1> keys{.keys = {key(0, 1, of_segment(SegmentKind::Linear)), key(10, 5)}};
   keys.before.kind = keys.after.kind = OutsideKind::Repeat;
   const Curve<1> curve = make(keys);
-  const auto pieces = with_copies(pieces_of(curve), -20.0, 30.0);
-  REQUIRE(pieces.has_value());
-  for (std::size_t k = 0; k < pieces->frames.size(); ++k)
-    CHECK(pieces->values[k] == curve.value(pieces->frames[k])[0]);
+  const auto segments = with_copies(segments_of(curve), -20.0, 30.0);
+  REQUIRE(segments.has_value());
+  for (std::size_t k = 0; k < segments->frames.size(); ++k)
+    CHECK(segments->values[k] == curve.value(segments->frames[k])[0]);
 }
 
 TEST_CASE("parts of a piece are the piece", "[exchange][pieces]") {
   Whim whim(5);
   for (int n = 0; n < 300; ++n) {
-    Piece piece{.kind = Piece::Kind::Bezier,
-                .start = 2,
-                .end = 10,
-                .from = whim.between(-3, 3),
-                .to = whim.between(-3, 3),
-                .out = {whim.between(0, 8), whim.between(-5, 5)},
-                .in = {whim.between(0, 8), whim.between(-5, 5)}};
-    const Curve<1> whole = curve_of(piece);
+    Segment segment{.kind = Segment::Kind::Bezier,
+                    .start = 2,
+                    .end = 10,
+                    .from = whim.between(-3, 3),
+                    .to = whim.between(-3, 3),
+                    .out = {whim.between(0, 8), whim.between(-5, 5)},
+                    .in = {whim.between(0, 8), whim.between(-5, 5)}};
+    const Curve<1> whole = curve_of(segment);
     const double frame = whim.between(2.5, 9.5);
-    const Cut parts = cut(piece, frame);
+    const Cut parts = cut(segment, frame);
     CHECK(parts.left.end == frame);
     CHECK(parts.left.to == parts.right.from);
-    for (const Piece& part : {parts.left, parts.right}) {
+    for (const Segment& part : {parts.left, parts.right}) {
       const Curve<1> curve = curve_of(part);
       for (int k = 0; k <= 20; ++k) {
         const double at = part.start + part.length() * k / 20;
@@ -110,17 +110,17 @@ TEST_CASE("parts of a piece are the piece", "[exchange][pieces]") {
 TEST_CASE("handles longer than their segment become shorter ones", "[exchange][pieces]") {
   // Pairs of lengths on and in the ellipse with one beyond 1.
   for (const auto& [a, b] : {std::pair(1.2, 0.4), {4.0 / 3, 1.0 / 3}, {1.1, 0.15}, {0.3, 1.25}}) {
-    const Piece piece{.kind = Piece::Kind::Bezier,
-                      .start = 0,
-                      .end = 12,
-                      .from = 1,
-                      .to = 4,
-                      .out = {12 * a, 2},
-                      .in = {12 * b, 3}};
-    const Curve<1> whole = curve_of(piece);
+    const Segment segment{.kind = Segment::Kind::Bezier,
+                          .start = 0,
+                          .end = 12,
+                          .from = 1,
+                          .to = 4,
+                          .out = {12 * a, 2},
+                          .in = {12 * b, 3}};
+    const Curve<1> whole = curve_of(segment);
     REQUIRE(whole.notes().empty());
-    const Cut parts = cut_where_slowest(piece);
-    for (const Piece& part : {parts.left, parts.right}) {
+    const Cut parts = cut_where_slowest(segment);
+    for (const Segment& part : {parts.left, parts.right}) {
       CHECK(part.out.frames <= part.length());
       CHECK(part.in.frames <= part.length());
       const Curve<1> curve = curve_of(part);
