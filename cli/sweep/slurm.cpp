@@ -220,7 +220,7 @@ Result<std::size_t> max_array_size(std::chrono::seconds patience) {
                   {.take_line = take, .patience = patience, .should_stop = &was_interrupted});
   if (!end) return fail(end.error());
   if (end->code != 0) return no_answer("scontrol", *end);
-  if (!size) return fail(ErrorCode::Unwritable, "scontrol show config tells no MaxArraySize");
+  if (!size) return fail(ErrorCode::Unwritable, "scontrol show config does not name MaxArraySize");
   return *size;
 }
 

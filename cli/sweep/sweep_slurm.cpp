@@ -120,8 +120,8 @@ Result<void> check_are_options(const std::vector<std::string>& sbatch) {
   for (const std::string& word : sbatch) {
     const bool is_option = word.starts_with('-') && word != "-" && word != "--";
     if (!is_option && !may_be_value)
-      return invalid(fmt::format("--sbatch {}: is no option of sbatch, such as --partition=short",
-                                 printable(word)));
+      return invalid(fmt::format(
+          "--sbatch {}: is not an option of sbatch, such as --partition=short", printable(word)));
     const bool has_value = word.starts_with("--") ? word.find('=') != std::string::npos
                                                   : word.size() > std::string_view("-p").size();
     may_be_value = is_option && !has_value;

@@ -71,7 +71,7 @@ class Sharing(Command):
 
     def test_a_fragment_alone_is_no_scene(self):
         result = self.run_pliant("validate", "rigs/poke.xml", code=2)
-        self.assertIn("the root element is <fragment>, which a <scene> may include", result.stderr)
+        self.assertIn("the root element is <fragment>, which is not a scene, but what a scene may include", result.stderr)
 
     def test_no_command_writes_over_an_included_file(self):
         self.shared()

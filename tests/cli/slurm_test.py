@@ -302,9 +302,9 @@ class Slurm(Command):
                 (["--engine", "slurm", "--sbatch=--wait"], ["--sbatch --wait: "]),
                 (["--engine", "slurm", "--sbatch=-W"], ["--sbatch --wait: "]),
                 # sbatch would submit that file.
-                (["--engine", "slurm", "--sbatch", "short"], ["--sbatch short: is no option of sbatch"]),
-                (["--engine", "slurm", "--sbatch=-pshort", "--sbatch", "x"], ["--sbatch x: is no option"]),
-                (["--engine", "slurm", "--sbatch=--", "--sbatch", "x"], ["--sbatch --: is no option"])]:
+                (["--engine", "slurm", "--sbatch", "short"], ["--sbatch short: is not an option of sbatch"]),
+                (["--engine", "slurm", "--sbatch=-pshort", "--sbatch", "x"], ["--sbatch x: is not an option"]),
+                (["--engine", "slurm", "--sbatch=--", "--sbatch", "x"], ["--sbatch --: is not an option"])]:
             with self.subTest(options=options):
                 scene = self.write("scene.xml", SCENE.format(columns=11, c=2))
                 errors = self.sweep("run", scene, "-o", self.path("s"), "--vary", "sheet.c=1,2", *options, code=2).stderr

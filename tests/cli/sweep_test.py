@@ -142,7 +142,7 @@ class Sweeps(SweepCommand):
                 (["--vary", "sheet.densty=1,2"], ["--vary sheet.densty=1,2: ", 'did you mean "density"']),
                 (["--vary", "sheet.density=1,-2"], ["--vary sheet.density=1,-2: ", "at least 0"]),
                 (["--vary", "sheet.density=1:2"], ["--vary sheet.density=1:2: ", "--sample"]),
-                (["--vary", "sheet.density=1:2:0"], ["no count"]),
+                (["--vary", "sheet.density=1:2:0"], ["not a count"]),
                 (["--vary", "sheet.density=1..2", "--set", "sheet.density=2"], ["--set sheet.density=2"]),
                 (["--vary", "sheet.density=1..2000", "--vary", "poke.magnitude=1..2000"], ["4000000 takes"]),
                 (["--vary", "sheet.density=1", "--part", "3/3"], ["--part 3/3"]),

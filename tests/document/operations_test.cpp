@@ -496,7 +496,7 @@ TEST_CASE("a part of a surface is set as a whole, with its comment", "[document]
   CHECK_THAT(after(beside, {hard}),
              contains_text("<!-- g -->\n    <!-- Hard. -->\n    <material damping"));
   CHECK_THAT(refusal(shot, {edit::SetPart{"poke", "material", {}}}),
-             contains_text("is no surface"));
+             contains_text("is not a surface"));
   CHECK_THAT(refusal(shot, {edit::SetPart{"sheet", "grid", {}}}),
              contains_text("allowed: transform, material, tangents, solver"));
   CHECK_THAT(refusal(shot, {edit::SetPart{"sheet", "material", {}, "a -- b"}}),

@@ -79,7 +79,7 @@ TEST_CASE("what is no channel is told with those that may be meant", "[scene][ch
         "nothing is named \"pike\"; did you mean \"poke\"? allowed: scene, sheet, poke");
   for (const char* const word : {"", "sheet"})
     CHECK(no_channel(scene, word).find("is not a path") != std::string::npos);
-  CHECK(no_channel(scene, "poke.falloff") == "\"poke.falloff\" is no channel");
+  CHECK(no_channel(scene, "poke.falloff") == "\"poke.falloff\" is not a channel");
 }
 
 TEST_CASE("channels point at the scene's own values", "[scene][channels]") {

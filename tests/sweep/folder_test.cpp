@@ -151,7 +151,7 @@ TEST_CASE("a file that is no log is told by its line, however large it is", "[sw
     CHECK(status.error().code == ErrorCode::InvalidInput);
     CHECK(status.error().file == file.string());
     CHECK(status.error().line == (text.empty() ? 1 : 2));
-    CHECK_THAT(status.error().message, contains_text("the file is no log of a sweep"));
+    CHECK_THAT(status.error().message, contains_text("the file is not the log of a sweep"));
     CHECK(calls < 20);
   }
   // Zeros that a power cut leaves at the end are no whole line.

@@ -82,9 +82,9 @@ TEST_CASE("wrong values are told", "[sweep][values]") {
   CHECK_THAT(axis_complaint(""), contains_text("empty"));
   CHECK_THAT(axis_complaint("6..3"), contains_text("must not be less than the first"));
   CHECK_THAT(axis_complaint("0..1000000"), contains_text("more than 1000000 values"));
-  CHECK_THAT(axis_complaint("0:1:0"), contains_text("no count of values"));
-  CHECK_THAT(axis_complaint("0:1:2.5"), contains_text("no count of values"));
-  CHECK_THAT(axis_complaint("0:1:9999999"), contains_text("no count of values"));
+  CHECK_THAT(axis_complaint("0:1:0"), contains_text("not a count of values"));
+  CHECK_THAT(axis_complaint("0:1:2.5"), contains_text("not a count of values"));
+  CHECK_THAT(axis_complaint("0:1:9999999"), contains_text("not a count of values"));
   CHECK_THAT(axis_complaint("0:1:3:log"), contains_text("one sign"));
   CHECK_THAT(axis_complaint("-1:1:3:log"), contains_text("one sign"));
   CHECK_THAT(axis_complaint("1:2:3:lag"), contains_text("no way to divide"));

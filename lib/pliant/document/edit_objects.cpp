@@ -183,8 +183,8 @@ Result<void> Editor::operator()(const Target& target) {
     const auto element = object(name);
     if (!element) return fail(element.error());
     if (*element == Draft::root || draft_.name(*element) == "surface")
-      return draft_.refuse(
-          fmt::format("{} is no force and no group", *element == Draft::root ? "the scene" : name));
+      return draft_.refuse(fmt::format("{} is neither a force nor a group",
+                                       *element == Draft::root ? "the scene" : name));
     set_or_remove(*element, "targets", fmt::format("{}", fmt::join(target.surfaces, " ")));
     parts_.insert(name + ".targets");
     if (auto done = draft_.commit(); !done) return done;

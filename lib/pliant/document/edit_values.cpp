@@ -189,12 +189,12 @@ Result<void> Editor::operator()(const SetPart& set) {
   if (!object) return fail(object.error());
   if (draft_.name(*object) != Description<Surface>::element)
     return draft_.refuse(
-        fmt::format("{} is no surface, so it has no parts", in_quotes(set.surface)));
+        fmt::format("{} is not a surface, so it has no parts", in_quotes(set.surface)));
   std::vector<std::string_view> allowed;
   for (const ChildFormat& child : format_of(draft_.name(*object)).children)
     if (child.is_part) allowed.push_back(child.names.front());
   if (std::ranges::find(allowed, set.part) == allowed.end())
-    return draft_.refuse(fmt::format("{} is no part that can be set; allowed: {}",
+    return draft_.refuse(fmt::format("{} is not a part that can be set; allowed: {}",
                                      in_quotes(set.part), fmt::join(allowed, ", ")));
   if (set.comment.find("--") != std::string::npos || set.comment.ends_with('-'))
     return draft_.refuse("a comment must not contain --, or end with -");
@@ -238,7 +238,7 @@ Result<std::string> Editor::value_at(const Spot& spot, double frame) const {
     if (!scene) return fail(scene.error());
     const PositionChannel* const position =
         find_position(*scene, name_of(spot.object), spot.attribute());
-    if (!position) return draft_.refuse(fmt::format("{} is no position", spot.path));
+    if (!position) return draft_.refuse(fmt::format("{} is not a position", spot.path));
     const Value<3> value = position->at(frame);
     return xml::value_text<3>(value, xml::ValueKind::Vector);
   }

@@ -32,7 +32,7 @@ std::string no_channel(const Scene& scene, std::string_view path) {
   if (!at) return at.error();
   const std::string progress = fmt::format("{}.progress", at->path.title());
   const auto is_it = [&](const NamedChannel& channel) { return channel.path == progress; };
-  return fmt::format("{} is no channel{}", in_quotes(path),
+  return fmt::format("{} is not a channel{}", in_quotes(path),
                      std::ranges::any_of(channels_of(scene), is_it)
                          ? "; the position follows a path, and its channel is " + progress
                          : "");

@@ -23,8 +23,8 @@ struct NamedChannel {
 /// not change.
 std::vector<NamedChannel> channels_of(const Scene& scene);
 
-/// Why a path is none of a channel of the scene: `"poke" has no attribute "magnitud"; did you mean
-/// "magnitude"? …`.
+/// Why a path does not lead to a channel of the scene: `"poke" has no attribute "magnitud"; did you
+/// mean "magnitude"? …`.
 std::string no_channel(const Scene& scene, std::string_view path);
 
 }  // namespace pliant

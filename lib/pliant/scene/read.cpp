@@ -152,8 +152,8 @@ std::optional<Scene> read_document(const Element& root, SceneFile& file) {
     const bool is_fragment = root.name() == "fragment";
     file.findings.add_problem(
         root.line(),
-        is_fragment ? "the root element is <fragment>, which a <scene> may include, but which is "
-                      "none itself"
+        is_fragment ? "the root element is <fragment>, which is not a scene, but what a scene "
+                      "may include"
         // The text may be of any file, and its words a secret.
         : nearest_word(root.name(), expected)
             ? fmt::format("the root element is {}{}", tag(root), hint(root.name(), expected))

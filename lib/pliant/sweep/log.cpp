@@ -59,7 +59,7 @@ tl::unexpected<Error> cannot_write_log(const std::string& name, int error) {
 // The error of reading a line, with what to do about a file that is none of ours.
 Error no_log(Error error) {
   if (error.code == ErrorCode::InvalidInput)
-    error.message += ", so that the file is no log of a sweep; move it away";
+    error.message += ", so that the file is not the log of a sweep; move it away";
   return error;
 }
 

@@ -226,7 +226,7 @@ class SweepFileReader : private JsonReader {
       const auto frames = numbers(json, "frames", 2).value_or(std::vector<double>(2));
       for (const double frame : frames)
         if (frame != std::trunc(frame) || !(std::fabs(frame) <= std::numeric_limits<int>::max()))
-          refuse("frames", "has an element that is no frame");
+          refuse("frames", "has an element that is not a frame");
       if (!fault_)
         request.frames = TakeFrames{static_cast<int>(frames[0]), static_cast<int>(frames[1])};
     }
@@ -238,7 +238,7 @@ class SweepFileReader : private JsonReader {
     // It becomes a part of file names.
     const std::string written = "takes" + request.write;
     if (!request.write.empty() && (!check_ending(written) || ending_of(written) != request.write))
-      refuse("write", "is no ending of an animation");
+      refuse("write", "is not the ending of an animation");
     content.table_hash = required_text(json, "takes");
   }
 
@@ -262,7 +262,7 @@ class SweepFileReader : private JsonReader {
       for (const std::uint64_t path : wholes(json, "paths"))
         axis.paths.push_back(static_cast<std::size_t>(path));
       axis.count = static_cast<std::size_t>(required_whole(json, "count"));
-      if (!texts(json, "texts").empty()) refuse("texts", "is no list of texts");
+      if (!texts(json, "texts").empty()) refuse("texts", "is not a list of texts");
       if (parts.axes.size() <= texts_.size()) axis.texts = std::move(texts_[parts.axes.size() - 1]);
     });
     return {};

@@ -40,7 +40,7 @@ Result<std::size_t> count_of(std::string_view text) {
   if (count && *count >= 1 && static_cast<std::uint64_t>(*count) <= most_takes)
     return static_cast<std::size_t>(*count);
   return fail(ErrorCode::InvalidInput,
-              fmt::format("\"{}\" is no count of values; it must be an integer from 1 to {}",
+              fmt::format("\"{}\" is not a count of values; it must be an integer from 1 to {}",
                           printable(text), most_takes));
 }
 

@@ -292,7 +292,7 @@ TEST_CASE("what has no place in a mesh of FBX or Collada is left out and counted
   Mesh sheet = small_sheet(false);
   sheet.uvs[4][0] = NAN;  // of four corners
   const Mesh mesh = read_assimp(folder.write("a.fbx", fbx_binary(sheet))).value();
-  CHECK(mesh.left_out == "4 (u,v) that are no pairs of numbers");
+  CHECK(mesh.left_out == "4 (u,v) that are not pairs of numbers");
   CHECK(std::count(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), -1) == 4);
   const std::string lines =
       "<lines count=\"2\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>"

@@ -329,7 +329,7 @@ TEST_CASE("(u,v) of a glTF that are not finite are left out", "[mesh][read_gltf]
   sheet.uvs[4][0] = INFINITY;
   Gltf gltf;
   const Mesh mesh = parse_exactly(gltf.text(gltf_mesh(gltf.primitive(sheet)), cloth_node)).value();
-  CHECK(mesh.left_out == "1 (u,v) that is no pair of numbers");
+  CHECK(mesh.left_out == "1 (u,v) that is not a pair of numbers");
   for (std::size_t k = 0; k < mesh.corner_uvs.size(); ++k)
     CHECK(mesh.corner_uvs[k] == (mesh.corner_vertices[k] == 4 ? -1 : mesh.corner_vertices[k]));
 }

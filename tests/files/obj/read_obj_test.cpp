@@ -255,7 +255,7 @@ TEST_CASE("what other programs pass over in an OBJ file is left out and counted"
     const Mesh mesh = parse_obj("v 0 0 0\n" + text + obj_quad + "f 1/1 3/3 4/4\n", "m.obj").value();
     CAPTURE(text);
     CHECK(mesh.corner_uvs == std::vector{-1, 2, 3});
-    CHECK(mesh.left_out == "1 texture vertex (vt) that is no number");
+    CHECK(mesh.left_out == "1 texture vertex (vt) that is not a number");
     CHECK(check_mesh(mesh));
   }
 }

@@ -276,7 +276,7 @@ TEST_CASE("numbers that a mesh does not need may be anything", "[mesh][read_ply]
                               "m.ply")
                         .value();
   CHECK(mesh.corner_uvs == std::vector{0, -1, 2, 3});
-  CHECK(mesh.left_out == "1 (u,v) that is no pair of numbers");
+  CHECK(mesh.left_out == "1 (u,v) that is not a pair of numbers");
   CHECK(check_mesh(mesh));
 }
 

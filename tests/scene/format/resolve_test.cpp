@@ -59,7 +59,7 @@ TEST_CASE("a path that leads nowhere is told with the nearest", "[scene][changes
       {"scene.version", "version cannot be changed"},
       {"sheet.density.w", R"(sheet.density has no part "w"; allowed: x, y, z, progress, closed)"},
       {"sheet.density.x", "sheet.density is a single number, so it has no x, y and z"},
-      {"sheet.translate.progress", "sheet.translate is no position, so it has no progress"},
+      {"sheet.translate.progress", "sheet.translate is not a position, so it has no progress"},
   };
   for (const auto& [path, complaint] : rows) {
     const auto at = slot_at(scene, path);

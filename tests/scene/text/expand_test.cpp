@@ -563,10 +563,9 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
   // A fragment is no scene.
   const Shot shot("");
   shot.folder().write("shot.xml", "<fragment/>");
-  CHECK(
-      shot.problems() ==
-      Lines{"shot.xml:1: the root element is <fragment>, which a <scene> may include, but which is "
-            "none itself"});
+  CHECK(shot.problems() ==
+        Lines{"shot.xml:1: the root element is <fragment>, which is not a scene, but what a "
+              "scene may include"});
 }
 
 TEST_CASE("files that are nested too deep together", "[scene][expand]") {

@@ -154,7 +154,7 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set, const StopRequest& s
   mesh.object = object.node.empty() ? object.mesh : object.node;
   LeftOut left_out;
   left_out.add(small_face, small_faces, static_cast<std::int64_t>(object.left_out));
-  left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+  left_out.add("(u,v) that is not a pair of numbers", "(u,v) that are not pairs of numbers",
                drop_invalid_uvs(mesh));
   mesh.left_out = left_out.text();
   if (auto checked = check_mesh(mesh, should_stop); !checked) return fail(checked.error());

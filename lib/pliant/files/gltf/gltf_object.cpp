@@ -92,7 +92,7 @@ class Merger {
     const std::size_t count = document_.meshes[object_.mesh].primitives.size();
     left_out.add("primitive of points or lines", "primitives of points or lines",
                  static_cast<std::int64_t>(count - primitives_.size()));
-    left_out.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+    left_out.add("(u,v) that is not a pair of numbers", "(u,v) that are not pairs of numbers",
                  drop_invalid_uvs(mesh_));
     constexpr std::size_t most_told = 10;
     const auto told = std::span(document_.looks).first(std::min(document_.looks.size(), most_told));

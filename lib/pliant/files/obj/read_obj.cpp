@@ -100,8 +100,8 @@ class ObjReader {
 
   Result<Mesh> finish(const std::string& object) {
     if (auto checked = check_faces(); !checked) return fail(checked.error());
-    left_out_.add("texture vertex (vt) that is no number",
-                  "texture vertices (vt) that are no numbers", drop_invalid_uvs(mesh_));
+    left_out_.add("texture vertex (vt) that is not a number",
+                  "texture vertices (vt) that are not numbers", drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);

@@ -131,7 +131,7 @@ class PlyReader {
     mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
     if (mesh_.face_sizes.empty()) return invalid("the file has no faces");
-    left_out_.add("(u,v) that is no pair of numbers", "(u,v) that are no pairs of numbers",
+    left_out_.add("(u,v) that is not a pair of numbers", "(u,v) that are not pairs of numbers",
                   drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
     if (!normals_.empty()) {

@@ -296,7 +296,7 @@ Result<SceneChange> parse_change(std::string_view typed) {
   }
   if (!change.path.empty()) return change;
   return refuse(
-      fmt::format("{} is no change; write PATH=TEXT, PATH*=K or PATH+=V, such as "
+      fmt::format("{} is not a change; write PATH=TEXT, PATH*=K or PATH+=V, such as "
                   "poke.magnitude*=2",
                   in_quotes(typed)));
 }

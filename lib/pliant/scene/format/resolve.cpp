@@ -84,7 +84,7 @@ std::string no_part(const ResolvedPath& at) {
   if (path.is_of_path())
     return at.format->is_position
                ? ""
-               : fmt::format("{} is no position, so it has no {}", path.title(), path.part);
+               : fmt::format("{} is not a position, so it has no {}", path.title(), path.part);
   return at.format->has_components()
              ? ""
              : fmt::format("{} is a single {}, so it has no x, y and z", path.title(),
