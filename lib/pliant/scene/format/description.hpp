@@ -1065,7 +1065,7 @@ void for_each_part(T& thing, Visit&& visit) {
   using Thing = std::remove_const_t<T>;
   visit(thing);
   if constexpr (std::is_same_v<Thing, Force>) std::visit(visit, thing.kind);
-  const auto child = [&](const Child& row, auto&& member) {
+  const auto child = [&]([[maybe_unused]] const Child& row, auto&& member) {
     using Member = std::remove_cvref_t<decltype(member)>;
     if constexpr (std::is_same_v<Thing, Surface>) {
       if (thing.is_driven() && !row.is_of_driven) return;

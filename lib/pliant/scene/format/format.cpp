@@ -33,10 +33,10 @@ ElementFormat curve_element(KeyAxis axis) {
 
 class FormatMaker {
  public:
-  std::vector<ElementFormat> make(Contents root);
+  std::vector<ElementFormat> make(const Contents& root);
 
  private:
-  void add(Contents contents, std::string_view parent);
+  void add(const Contents& contents, std::string_view parent);
   void add(ElementFormat format, std::vector<std::string_view> parents) {
     format.parents = std::move(parents);
     formats_.push_back(std::move(format));
@@ -56,7 +56,7 @@ class FormatMaker {
   std::vector<std::string_view> with_falloff_;
 };
 
-void FormatMaker::add(Contents contents, std::string_view parent) {
+void FormatMaker::add(const Contents& contents, std::string_view parent) {
   const auto known = std::ranges::find(formats_, contents.element, &ElementFormat::name);
   if (known != formats_.end()) return known->parents.push_back(parent);
   const std::size_t own = formats_.size();
@@ -67,11 +67,11 @@ void FormatMaker::add(Contents contents, std::string_view parent) {
                       .text = contents.text});
   if (!parent.empty()) formats_.back().parents.push_back(parent);
   if (contents.falloff) with_falloff_.push_back(contents.element);
-  for (ChildPlace& child : contents.children) {
+  for (const ChildPlace& child : contents.children) {
     const bool is_part = child.part != nullptr;
     formats_[own].children.push_back({child.kinds.names, child.row, is_part});
     for (const std::string_view name : child.kinds.names)
-      add(is_part ? std::move(*child.part) : child.kinds.add(name), contents.element);
+      add(is_part ? *child.part : child.kinds.add(name), contents.element);
   }
 }
 
@@ -147,8 +147,8 @@ void FormatMaker::add_includes() {
   formats_.back().parents = std::move(parents);
 }
 
-std::vector<ElementFormat> FormatMaker::make(Contents root) {
-  add(std::move(root), "");
+std::vector<ElementFormat> FormatMaker::make(const Contents& root) {
+  add(root, "");
   add_curves();
   add_includes();
   return std::move(formats_);
@@ -156,7 +156,7 @@ std::vector<ElementFormat> FormatMaker::make(Contents root) {
 
 }  // namespace
 
-std::vector<ElementFormat> formats_of(Contents root) { return FormatMaker().make(std::move(root)); }
+std::vector<ElementFormat> formats_of(const Contents& root) { return FormatMaker().make(root); }
 
 const std::vector<ElementFormat>& scene_format() {
   static const std::vector<ElementFormat> formats = [] {

@@ -56,7 +56,7 @@ struct ElementFormat {
 
 /// The format of a root element and of all that may stand in it, made from the descriptions that
 /// reading and writing use.
-std::vector<ElementFormat> formats_of(xml::Contents root);
+std::vector<ElementFormat> formats_of(const xml::Contents& root);
 
 /// The format of scenes.
 const std::vector<ElementFormat>& scene_format();
