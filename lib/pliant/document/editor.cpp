@@ -130,15 +130,15 @@ Result<Spot> Editor::spot(const std::string& given) const {
   const auto parts = xml::split_path(path);
   const auto object = parts ? this->object(parts->name) : Result<Element>(Draft::root);
   if (!object) return fail(object.error());
-  const std::vector<std::string> elements = parts_of(*object);
-  const auto at =
-      xml::resolve({.formats = formats_,
-                    .names = {},
-                    .elements =
-                        [&](const std::string&) {
-                          return std::vector<std::string_view>(elements.begin(), elements.end());
-                        }},
-                   path);
+  const auto at = xml::resolve({.names = {},
+                                .elements =
+                                    [&](const std::string&) {
+                                      std::vector<const ElementFormat*> formats;
+                                      for (const std::string& part : parts_of(*object))
+                                        formats.push_back(&format_of(part));
+                                      return formats;
+                                    }},
+                               path);
   if (!at) return draft_.refuse(at.error());
   if (at->path.is_of_path()) return spot_on_path(path, *object, at->path.attribute, at->path.part);
   Spot spot{.path = at->path.title(),

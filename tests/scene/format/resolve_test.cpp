@@ -67,3 +67,23 @@ TEST_CASE("a path that leads nowhere is told with the nearest", "[scene][changes
     CHECK(at.error() == complaint);
   }
 }
+
+TEST_CASE("paths lead into forces and meshes of a program", "[scene][changes]") {
+  Scene scene = parse_scene(R"(<scene version="1" start="1" end="2">
+    <surface name="sheet"><grid columns="5" rows="5"/></surface><point name="poke"/></scene>)",
+                            "paths.xml", "")
+                    .value();
+  scene.surfaces[0].shape = Mesh();
+  scene.forces[0].kind = CustomForce();
+  for (const NamedChannel& channel : channels_of(scene)) {
+    CAPTURE(channel.path);
+    CHECK(slot_at(scene, channel.path));
+  }
+  CHECK(
+      slot_at(scene, "poke.magnitud")
+          .error()
+          .starts_with(
+              R"("poke" has no attribute "magnitud"; did you mean "magnitude"? allowed: name, enabled)"));
+  CHECK(slot_at(scene, "sheet.columns").error().starts_with(R"("sheet" has no attribute)"));
+  CHECK(no_channel(scene, "poke.center").starts_with(R"("poke" has no attribute "center")"));
+}

@@ -87,12 +87,8 @@ std::vector<Slot*> Contents::channels() {
   return slots;
 }
 
-bool Contents::has_channels() const {
-  const auto is_one = [](const Slot& slot) { return is_channel(slot.place); };
-  return std::ranges::any_of(attributes, is_one) ||
-         std::ranges::any_of(children, [](const ChildPlace& child) {
-           return child.part && child.part->has_channels();
-         });
+bool Contents::has_channels() {
+  return std::ranges::any_of(channels(), [](const Slot* slot) { return is_channel(slot->place); });
 }
 
 bool Contents::has_positions() const {

@@ -52,7 +52,7 @@ struct Contents {
 
   /// The slots that an <animate> in it may name: its own, and those of its parts.
   std::vector<Slot*> channels();
-  bool has_channels() const;   ///< an <animate> may stand in it
+  bool has_channels();         ///< an <animate> may stand in it
   bool has_positions() const;  ///< a <path> may stand in it
   Slot* find(std::string_view attribute);
 };

@@ -40,35 +40,49 @@ Table all_slots(const NamedThings& things, const std::string& name) {
   return name == Description<Scene>::element ? all_slots(things.scene()) : Table();
 }
 
-/// The elements whose attributes a surface has.
-std::vector<std::string_view> elements_of(const Surface& surface) {
-  std::vector<std::string_view> elements = {Description<Surface>::element};
-  const ElementFormat& format = *find_format(scene_format(), elements.front());
-  for (const ChildFormat& child : format.children) {
+const ElementFormat* format_of(std::string_view element) {
+  return find_format(scene_format(), element);
+}
+
+/// The formats whose attributes a surface has.
+std::vector<const ElementFormat*> formats_of(const Surface& surface) {
+  std::vector<const ElementFormat*> formats = {format_of(Description<Surface>::element)};
+  for (const ChildFormat& child : formats.front()->children) {
     if (surface.is_driven() && !child.row.is_of_driven) continue;
-    if (child.is_choice()) elements.push_back(shape_of(surface));
-    if (child.is_part) elements.push_back(child.names.front());
+    if (child.is_choice()) formats.push_back(format_of(shape_of(surface)));
+    if (child.is_part) formats.push_back(format_of(child.names.front()));
   }
-  std::erase(elements, std::string_view());
-  return elements;
+  std::erase(formats, nullptr);  // a mesh of a program has no element
+  return formats;
+}
+
+/// That of a force, even of a program's own kind, which has no element in a file.
+const ElementFormat* format_of(const Force& force) {
+  static const ElementFormat custom = [] {
+    Force own;
+    own.kind = CustomForce();
+    return pliant::formats_of(contents_of(own)).front();
+  }();
+  return std::holds_alternative<CustomForce>(force.kind) ? &custom : format_of(kind_of(force));
 }
 
 /// Those of the one that is not null, or of the scene.
-std::vector<std::string_view> elements_of(const Surface* surface, const Force* force,
-                                          const Group* group, std::string_view name) {
-  if (surface) return elements_of(*surface);
-  if (force) return {kind_of(*force)};
-  if (group) return {Description<Group>::element};
-  if (name == Description<Scene>::element) return {Description<Scene>::element};
+std::vector<const ElementFormat*> formats_of(const Surface* surface, const Force* force,
+                                             const Group* group, std::string_view name) {
+  if (surface) return formats_of(*surface);
+  if (force) return {format_of(*force)};
+  if (group) return {format_of(Description<Group>::element)};
+  if (name == Description<Scene>::element) return {format_of(name)};
   return {};
 }
 
-std::string no_attribute(const ValuePath& path, const PathScope& scope,
-                         std::vector<std::string_view> elements) {
-  std::vector<std::string_view> names;
-  for (const std::string_view element : elements)
-    for (const AttributeFormat& format : find_format(scope.formats, element)->attributes)
+std::string no_attribute(const ValuePath& path, const std::vector<const ElementFormat*>& formats) {
+  std::vector<std::string_view> names, elements;
+  for (const ElementFormat* const element : formats) {
+    elements.push_back(element->name);
+    for (const AttributeFormat& format : element->attributes)
       if (format.need != Need::Later) names.push_back(format.name);
+  }
   std::rotate(elements.begin(), elements.begin() + 1, elements.end());  // its parts first
   std::vector<std::string_view> own;
   return fmt::format("{} has no attribute {}{}", in_quotes(path.name), in_quotes(path.attribute),
@@ -111,8 +125,8 @@ NamedThings::NamedThings(Scene& scene) : scene_(scene) {
   for (Group& group : scene.groups) groups_.try_emplace(group.name, &group);
 }
 
-std::vector<std::string_view> NamedThings::elements(const std::string& name) const {
-  return elements_of(surface(name), force(name), group(name), name);
+std::vector<const ElementFormat*> NamedThings::elements(const std::string& name) const {
+  return formats_of(surface(name), force(name), group(name), name);
 }
 
 PathScope scope_of(const Scene& scene) {
@@ -121,8 +135,7 @@ PathScope scope_of(const Scene& scene) {
         std::ranges::find_if(things, [&](const auto& one) { return one.name == name; });
     return found != things.end() ? &*found : nullptr;
   };
-  return {.formats = scene_format(),
-          .names =
+  return {.names =
               [&scene] {
                 std::vector<std::string_view> names = {Description<Scene>::element};
                 for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
@@ -132,8 +145,8 @@ PathScope scope_of(const Scene& scene) {
               },
           .elements =
               [&scene, find](const std::string& name) {
-                return elements_of(find(scene.surfaces, name), find(scene.forces, name),
-                                   find(scene.groups, name), name);
+                return formats_of(find(scene.surfaces, name), find(scene.forces, name),
+                                  find(scene.groups, name), name);
               }};
 }
 
@@ -144,18 +157,18 @@ Reading<ResolvedPath> resolve(const PathScope& scope, std::string_view path) {
         fmt::format("{} is not a path; write NAME.ATTRIBUTE, such as poke.magnitude or scene.fps",
                     in_quotes(path)));
   ResolvedPath at{.path = *std::move(parts), .element = {}};
-  const std::vector<std::string_view> elements = scope.elements(at.path.name);
+  const std::vector<const ElementFormat*> elements = scope.elements(at.path.name);
   if (elements.empty())
     return tl::unexpected(fmt::format("nothing is named {}{}", in_quotes(at.path.name),
                                       hint(at.path.name, scope.names())));
-  for (const std::string_view element : elements) {
+  for (const ElementFormat* const element : elements) {
     if (at.format) break;
-    at.element = element;
-    const auto& attributes = find_format(scope.formats, element)->attributes;
+    at.element = element->name;
+    const auto& attributes = element->attributes;
     const auto found = std::ranges::find(attributes, at.path.attribute, &AttributeFormat::name);
     if (found != attributes.end()) at.format = &*found;
   }
-  if (!at.format) return tl::unexpected(no_attribute(at.path, scope, elements));
+  if (!at.format) return tl::unexpected(no_attribute(at.path, elements));
   if (at.path.part.empty()) return at;
   if (std::string problem = no_part(at); !problem.empty()) return tl::unexpected(problem);
   return at;

@@ -35,10 +35,9 @@ std::optional<ValuePath> split_path(std::string_view path);
 
 /// What paths lead into.
 struct PathScope {
-  const std::vector<ElementFormat>& formats;
   std::function<std::vector<std::string_view>()> names;  ///< of its objects
-  /// The element of an object, then those of its shape and its parts; none: nothing has the name.
-  std::function<std::vector<std::string_view>(const std::string& name)> elements;
+  /// The format of an object, then those of its shape and its parts; none: nothing has the name.
+  std::function<std::vector<const ElementFormat*>(const std::string& name)> elements;
 };
 
 /// Those of a scene, which must outlive it.
@@ -74,7 +73,7 @@ class NamedThings {
   Force* force(const std::string& name) const { return found(forces_, name); }
   Group* group(const std::string& name) const { return found(groups_, name); }
   /// See `PathScope`.
-  std::vector<std::string_view> elements(const std::string& name) const;
+  std::vector<const ElementFormat*> elements(const std::string& name) const;
 
  private:
   template <class Thing>
