@@ -187,12 +187,6 @@ bool read_numbers(const Element& element, std::vector<double>& numbers, Findings
   return is_sound;
 }
 
-Slot* find(std::span<Slot> table, std::string_view name) {
-  const auto found = std::find_if(table.begin(), table.end(),
-                                  [&](const Slot& row) { return row.attribute.name == name; });
-  return found != table.end() ? &*found : nullptr;
-}
-
 std::string tag(const Element& element) {
   const std::string name = in_quotes(element.name());
   return '<' + name.substr(1, name.size() - 2) + '>';

@@ -32,9 +32,6 @@ bool read_children(const Element& element, std::span<const ChildReader> children
 /// it, what is not a number, each with its line. Returns whether there was none.
 bool read_numbers(const Element& element, std::vector<double>& numbers, Findings& findings);
 
-/// The row of that name, or null.
-Slot* find(std::span<Slot> table, std::string_view name);
-
 /// `<grid>`.
 std::string tag(const Element& element);
 

@@ -147,7 +147,8 @@ void ContentsReader::read_unique(const Element& child, ChildPlace& place) {
     reader.read_rest();
     place.kinds.drop();
     if (path.empty()) return;
-    for (const std::string_view word : contents.find(place.row.unique_by)->attribute.words)
+    for (const std::string_view word :
+         find(contents.attributes, place.row.unique_by)->attribute.words)
       doubt(fmt::format("{}.{}", path, word));
     return;
   }
@@ -170,7 +171,7 @@ void ContentsReader::read_unique(const Element& child, ChildPlace& place) {
 /// A <falloff> stands in place of the attribute of that name.
 void ContentsReader::read_falloff(const Element& child) {
   const int line = child.line();
-  const Slot& attribute = *contents_.find(child.name());
+  const Slot& attribute = *find(contents_.attributes, child.name());
   if (falloff_line_ != 0)
     findings_.add_problem(line, fmt::format("{} has a second {}; the first is at {}", tag(element_),
                                             tag(child), findings_.title_of(falloff_line_, line)));

@@ -97,12 +97,6 @@ bool Contents::has_positions() const {
   });
 }
 
-Slot* Contents::find(std::string_view attribute) {
-  const auto found = std::ranges::find_if(
-      attributes, [&](const Slot& slot) { return slot.attribute.name == attribute; });
-  return found != attributes.end() ? &*found : nullptr;
-}
-
 Contents contents_of(Surface& surface) {
   Contents made = contents_of<Surface&>(surface);
   made.driver = &surface.driven_by;
@@ -119,7 +113,7 @@ Contents contents_of(Force& force) {
   made.attributes = maker.take();
   Description<Force>::children(ContentsMaker(made), force);
   if (!force.group.empty())
-    made.find(deformation_radius_attribute.name)->excluded =
+    find(made.attributes, deformation_radius_attribute.name)->excluded =
         "a force in a <group> must not have one; the deformationRadius of the group selects the "
         "region";
   return made;

@@ -54,7 +54,6 @@ struct Contents {
   std::vector<Slot*> channels();
   bool has_channels();         ///< an <animate> may stand in it
   bool has_positions() const;  ///< a <path> may stand in it
-  Slot* find(std::string_view attribute);
 };
 
 /// The contents of a thing, which must outlive them and stay where it is.

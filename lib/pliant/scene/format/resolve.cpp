@@ -184,8 +184,7 @@ Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path) {
   Reading<ResolvedPath> at = resolve(scope, path);
   if (!at) return tl::unexpected(at.error());
   Table table = all_slots(things, at->path.name);
-  const auto found = std::ranges::find_if(
-      table, [&](const Slot& slot) { return slot.attribute.name == at->path.attribute; });
+  Slot* const found = find(table, at->path.attribute);
   const Attribute& attribute = found->attribute;
   if (!found->excluded.empty())
     return tl::unexpected(fmt::format("{}: {}", at->path.title(), found->excluded));

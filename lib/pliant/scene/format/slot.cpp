@@ -330,6 +330,12 @@ Slot custom(const Attribute& attribute, std::string_view type, std::string_view 
           .read = std::move(read)};
 }
 
+Slot* find(std::span<Slot> table, std::string_view name) {
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const Slot& row) { return row.attribute.name == name; });
+  return found != table.end() ? &*found : nullptr;
+}
+
 AttributeFormat format_of(const Slot& slot) {
   const Attribute& attribute = slot.attribute;
   std::string standard =

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -76,6 +77,9 @@ struct Slot {
 
 /// The slots of an element.
 using Table = std::vector<Slot>;
+
+/// The slot of that name, or null.
+Slot* find(std::span<Slot> table, std::string_view name);
 
 /// The slot of an attribute whose value is stored in `place`, which must outlive it; the value that
 /// is there is the default.
