@@ -4,28 +4,16 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/plate/solver_choice.hpp"
+#include "pliant/sweep/request.hpp"
 #include "pliant/sweep/sweep.hpp"
-#include "pliant/sweep/takes.hpp"
 
 namespace pliant {
-
-/// What is asked of a sweep in a folder, as typed.
-struct SweepRequest {
-  std::vector<std::string> scenes = {};  ///< files
-  SweepVariation variation = {};         ///< its `scene_count` is that of the scenes
-  std::optional<TakeFrames> frames = {};
-  SolverChoice solver = SolverChoice::Auto;
-  std::string root = {};   ///< as in `load_scene`
-  std::string write = {};  ///< ending of the animations, `.npy`; empty: only the table is made
-};
 
 /// Whether a take was run.
 enum class TakeStatus { Missing, Failed, Done };

@@ -2,15 +2,14 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/text/scene_texts.hpp"
-#include "pliant/sweep/folder.hpp"
 #include "pliant/sweep/input_hashes.hpp"
+#include "pliant/sweep/request.hpp"
 #include "pliant/sweep/takes.hpp"
 
 namespace pliant {
