@@ -290,10 +290,8 @@ void print_profile(const Profile& profile, double elapsed) {
 void add_bake_options(CLI::App& command, BakeOptions& options) {
   command
       .add_option("-o,--out", options.out,
-                  fmt::format("Output file; its ending selects the format: {}. Several surfaces "
-                              "are written to a file each, OUT-NAME, but all to one .glb, .gltf "
-                              "or .usda. A sequence (.obj, .ply) has the frame in each name: "
-                              "OUT.0001.obj; a run of # in OUT sets the number of digits",
+                  fmt::format("Output file; its ending selects the format: {}; a run of # in it "
+                              "is the frame",
                               fmt::join(known_endings(), ", ")))
       ->required();
   command.add_option("--frames", options.frames,

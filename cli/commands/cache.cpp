@@ -20,10 +20,10 @@ void print_note(const CacheOptions& options, const std::string& message) {
 }  // namespace
 
 void add_cache(CLI::App& command, CacheOptions& options) {
-  CLI::Option* const folder = command.add_option(
-      "--cache", options.folder,
-      "Folder that stores each frame's state; a later bake, after an edit or an interrupt, reads "
-      "the states that are still valid instead of solving them");
+  CLI::Option* const folder =
+      command.add_option("--cache", options.folder,
+                         "Folder that stores each frame's state; a later bake reads "
+                         "the states that are still valid instead of solving them");
   command
       .add_option("--cache-size", options.gigabytes,
                   "Most disk space that the folder may use, in GB; the states unused for longest "

@@ -52,9 +52,8 @@ Result<std::string> read_standard_input() {
 void add_root(CLI::App& command, Root& root) {
   command.add_option(
       "--root", root,
-      "Folder that must contain every file that the scene leads to: includes, meshes, caches, "
-      "maps, "
-      "and what meshes refer to; by default only the latter are confined, to the scene's folder");
+      "Folder that must contain every file that the scene leads to; by default only what meshes "
+      "refer to is confined, to the scene's folder");
 }
 
 Result<std::filesystem::path> folder_of(const Root& root) {
@@ -78,9 +77,8 @@ std::string title_of_scene(const std::string& scene) {
 void add_changes(CLI::App& command, Changes& changes) {
   command
       .add_option("--set", changes,
-                  "Changes for this run, as often as needed: NAME.ATTRIBUTE=TEXT as if the scene "
-                  "said so; a channel times K at every frame, NAME.ATTRIBUTE*=K, or plus V, "
-                  "NAME.ATTRIBUTE+=V")
+                  "As if the scene said so, as often as needed: NAME.ATTRIBUTE=TEXT, or a channel "
+                  "times K, NAME.ATTRIBUTE*=K, or plus V, NAME.ATTRIBUTE+=V")
       ->type_name("PATH=TEXT")
       ->expected(1)
       ->take_all()

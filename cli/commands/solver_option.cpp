@@ -11,7 +11,7 @@ void add_solver(CLI::App& command, std::string& solver) {
   command
       .add_option("--solver", solver,
                   "Solver of the plates: in sine space, by CHOLMOD's sparse factors, or the one "
-                  "that suits each region; results differ by at most 2e-9 of their size")
+                  "that suits each region")
       ->check(one_of({"auto", "spectral", "cholmod"}))
       ->capture_default_str();
 }

@@ -242,10 +242,8 @@ void add_sweep_run(CLI::App& sweep, SweepRunOptions& options) {
   add_changes(*run, options.set);
   run->add_option(
          "--vary", options.vary,
-         "An axis, as often as needed: PATH=VALUES as --set takes a PATH, or PATH*=VALUES, "
-         "PATH+=VALUES. VALUES is a list a,b,c; A:B:N, numbers from A to B; A:B:N:log; "
-         "A..B, integers; or A:B, an interval for --sample. Takes are the product of all "
-         "axes, the last one fastest")
+         "An axis, as often as needed, of a PATH of --set (=, *=, +=): a,b,c; A:B:N, numbers; "
+         "A:B:N:log; A..B, integers; A:B, to --sample")
       ->type_name("PATH=VALUES")
       ->expected(1)
       ->take_all()
@@ -258,7 +256,7 @@ void add_sweep_run(CLI::App& sweep, SweepRunOptions& options) {
                   "Frames to measure and write, A:B or one frame; all by default");
   add_solver(*run, options.solver);
   run->add_option("--write", options.write,
-                  "Also write each take's animation, in the format of this ending of bake");
+                  "Also write each take's animation, in the format of this ending, such as .npy");
   add_root(*run, options.root);
   run->add_option("--part", options.part,
                   "Run only takes t with t mod P = K, 0 <= K < P: one job of a batch engine")

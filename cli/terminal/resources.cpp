@@ -73,9 +73,8 @@ void add_memory(CLI::App& command, ResourceOptions& options) {
   constexpr double least = 1e-6;  // a kilobyte
   command
       .add_option("--max-memory", options.max_memory,
-                  "Most memory to use, in GB; a run that needs more is refused before it "
-                  "allocates; three quarters of the machine's memory by default, or what the limit "
-                  "of a container or a Slurm job leaves")
+                  "Most memory to use, in GB; a run that needs more is refused; three quarters of "
+                  "the machine's by default, or what a container's limit leaves")
       ->check(number_from(least));
 }
 

@@ -29,6 +29,17 @@ def options_in(text):
     return set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help", "--version"}
 
 
+def check_texts(*command):
+    """The text beside each option has two lines at most, of a terminal with 100 columns, and names no batch engine
+    but in the command that submits to one."""
+    text = help_of(*command)
+    for line in re.findall(r"^  .*", text, re.MULTILINE):
+        assert len(line[30:]) <= 2 * (100 - 30), (command, line)
+    assert command == ("sweep", "run") or not re.search("slurm|sbatch", text, re.IGNORECASE), command
+    for part in commands_in(text):
+        check_texts(*command, part)
+
+
 def main():
     with open(os.path.join(SOURCE, "docs/command.md"), encoding="utf-8") as file:
         page = file.read()
@@ -36,7 +47,8 @@ def main():
     assert commands == set(re.findall(r"^\| `pliant ([a-z]+)", page, re.MULTILINE)), commands
     offered = options_of()
     assert offered == options_in(page), offered ^ options_in(page)
-    listed = re.search(r"selects the format: (.*?)\. Several", " ".join(help_of("bake").split())).group(1)
+    check_texts()
+    listed = re.search(r"selects the format: (.*?);", " ".join(help_of("bake").split())).group(1)
     endings = re.findall(r"^\| `(\.\w+)`", page, re.MULTILINE)
     assert sorted(endings) == sorted(listed.split(", ")), (endings, listed)
     print("ok", sorted(commands), sorted(offered), endings)
