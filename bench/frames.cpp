@@ -264,33 +264,17 @@ void print_selection(const Options& options) {
   }
 }
 
-bool parse(int count, char* arguments[], Options& options) {
-  for (int k = 1; k < count; ++k) {
-    const std::string_view name = arguments[k];
-    if (name == "--least") {
-      options.is_least = true;
-      continue;
-    }
-    if (++k == count) return false;
-    const std::string_view value = arguments[k];
-    const bool is_known =
-        (name == "--seconds" && read_number(value, options.seconds)) ||
-        (name == "--threads" && read_number(value, options.threads) && options.threads >= 1) ||
-        (name == "--sides" && read_sides(value, options.sides));
-    if (!is_known) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 int main(int count, char* arguments[]) {
   Options options;
-  if (!parse(count, arguments, options)) {
-    fmt::print(stderr,
-               "usage: frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]\n");
+  if (!read_options(count, arguments,
+                    {{"--sides", &options.sides},
+                     {"--seconds", &options.seconds},
+                     {"--threads", &options.threads},
+                     {"--least", &options.is_least}},
+                    "frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]"))
     return 2;
-  }
   print_frames(options);
   print_selection(options);
   return 0;

@@ -119,20 +119,13 @@ void measure(const Options& options, double angle, bool is_keyed) {
 
 int main(int argc, char** argv) {
   Options options;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view name = argv[k];
-    if (name == "--factors") {
-      options.solver = available_solvers().front();
-    } else if (name == "--side" && k + 1 < argc) {
-      if (!read_number(argv[++k], options.side)) options.side = 0;
-    } else if (name == "--frames" && k + 1 < argc) {
-      if (!read_number(argv[++k], options.frames)) options.frames = 0;
-    }
-  }
-  if (options.side < 5 || options.frames < 2) {
-    std::fputs("needs --side of at least 5, --frames of at least 2\n", stderr);
-    return 2;
-  }
+  bool has_factors = false;
+  const bool are_right = read_options(
+      argc, argv,
+      {{"--side", &options.side}, {"--frames", &options.frames}, {"--factors", &has_factors}},
+      "integrators [--side N] [--frames N] [--factors]");
+  if (!are_right || options.side < 5 || options.frames < 2) return 2;
+  if (has_factors) options.solver = available_solvers().front();
   fmt::print("{} x {} nodes, {} frames\n", options.side, options.side, options.frames);
   fmt::print("  rad   load  solves    frame        (ms)   steps   (mean)     error\n");
   for (const double angle : {0.1, 0.25, 0.5, 1.0, 2.0, 5.0}) measure(options, angle, true);

@@ -144,11 +144,8 @@ void measure_preparation(int count) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bool is_large = count == 2 && std::string_view(arguments[1]) == "--large";
-  if (count > 1 && !is_large) {
-    fmt::print(stderr, "usage: meshes [--large]\n");
-    return 2;
-  }
+  bool is_large = false;
+  if (!read_options(count, arguments, {{"--large", &is_large}}, "meshes [--large]")) return 2;
   fmt::print(
       "| nodes inside | faces | cells | kept, ms | bound | ratio | sliding, ms | bound | ratio |\n"
       "|---|---|---|---|---|---|---|---|---|\n");

@@ -129,32 +129,19 @@ void measure(const Options& options, int side, double part) {
 
 int main(int argc, char** argv) {
   Options options;
-  bool is_right = true;
-  for (int k = 1; k < argc; ++k) {
-    const std::string_view name = argv[k];
-    if (name == "--newmark") {
-      options.integrator = Integrator::Newmark;
-    } else if (name == "--sides" && k + 1 < argc) {
-      is_right = read_sides(argv[++k], options.sides) && is_right;
-    } else if (name == "--frames" && k + 1 < argc) {
-      is_right = read_number(argv[++k], options.frames) && is_right;
-    } else if (name == "--flow" && k + 1 < argc) {
-      is_right = read_number(argv[++k], options.flow) && is_right;
-    } else if (name == "--hardening" && k + 1 < argc) {
-      is_right = read_number(argv[++k], options.hardening) && is_right;
-    } else if (name == "--components" && k + 1 < argc) {
-      is_right = read_number(argv[++k], options.components) && is_right;
-    } else {
-      is_right = false;
-    }
-  }
-  if (!is_right || options.frames <= first_measured) {
-    std::fputs(
-        "usage: plastic [--sides 101,201] [--frames N] [--flow PART] [--hardening H] "
-        "[--components 1..3] [--newmark]\n",
-        stderr);
+  bool is_newmark = false;
+  if (!read_options(argc, argv,
+                    {{"--sides", &options.sides},
+                     {"--frames", &options.frames},
+                     {"--flow", &options.flow},
+                     {"--hardening", &options.hardening},
+                     {"--components", &options.components},
+                     {"--newmark", &is_newmark}},
+                    "plastic [--sides 101,201] [--frames N] [--flow PART] [--hardening H] "
+                    "[--components 1..3] [--newmark]"))
     return 2;
-  }
+  if (is_newmark) options.integrator = Integrator::Newmark;
+  options.frames = std::max(options.frames, first_measured + 1);
   fmt::print(" side    flow   elastic   watched (ratio)   plastic (ratio)  solves\n");
   const std::vector<double> parts =
       options.flow > 0 ? std::vector{options.flow} : std::vector{0.1, 0.97};

@@ -44,17 +44,15 @@ constexpr double dt = 1.0 / 24 / steps_per_frame;
 constexpr Dynamics dynamics{40, 20};
 
 struct Options {
-  std::vector<std::pair<int, int>> boxes;
+  // Squares with smooth numbers of intervals; then neighbouring sizes with a prime number or twice
+  // a prime; then longer boxes.
+  std::string boxes = "51,101,201,401,701,1001,2001,102,198,402,398,720,101x801,801x101,31x2001";
   int direct_side = 401;
   int threads = 1;
   std::string csv;  // file; empty: none
 };
 
-double median(std::vector<double> numbers) {
-  const auto middle = numbers.begin() + static_cast<long>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
-}
+double median(std::vector<double> numbers) { return typical(std::move(numbers), false); }
 
 // A frame of sparse factors. [s]
 struct DirectCost {
@@ -181,70 +179,36 @@ void print_csv(const Row& row, std::FILE* file) {
              frame_of(row.eigen));
 }
 
-// "51,101x801": boxes by columns and rows; one number: a square.
-std::optional<std::vector<std::pair<int, int>>> parse_boxes(std::string_view text) {
+// "51,101x801": boxes by columns and rows, 3 or more; one number: a square.
+std::vector<std::pair<int, int>> parse_boxes(std::string_view text) {
   std::vector<std::pair<int, int>> boxes;
   while (!text.empty()) {
     const std::string_view box = text.substr(0, text.find(','));
     text.remove_prefix(std::min(text.size(), box.size() + 1));
-    const auto number = [](std::string_view digits) {
-      int value = 0;
-      return read_number(digits, value) && value >= 1 && value <= 20'000 ? value : 0;
-    };
+    auto& [columns, rows] = boxes.emplace_back();
     const auto cross = box.find('x');
-    const int columns = number(box.substr(0, cross));
-    const int rows = cross == std::string_view::npos ? columns : number(box.substr(cross + 1));
-    if (columns == 0 || rows == 0) return {};
-    boxes.emplace_back(columns, rows);
+    const std::string_view after = cross == std::string_view::npos ? box : box.substr(cross + 1);
+    if (!read_value(box.substr(0, cross), columns) || !read_value(after, rows) ||
+        std::min(columns, rows) < 3)
+      return {};
   }
   return boxes;
-}
-
-bool are_solvable(const std::vector<std::pair<int, int>>& boxes) {
-  return std::all_of(boxes.begin(), boxes.end(),
-                     [](const auto& box) { return box.first >= 3 && box.second >= 3; });
-}
-
-std::optional<Options> parse(int count, char* arguments[]) {
-  Options options;
-  for (int k = 1; k < count; ++k) {
-    const std::string_view name = arguments[k];
-    if (k + 1 == count) return {};
-    if (name == "--csv") {
-      options.csv = arguments[++k];
-      continue;
-    }
-    const auto boxes = parse_boxes(arguments[++k]);
-    if ((name == "--direct" || name == "--threads") && boxes && boxes->size() == 1) {
-      (name == "--direct" ? options.direct_side : options.threads) = boxes->front().first;
-    } else if (name == "--boxes" && boxes && are_solvable(*boxes)) {
-      options.boxes.insert(options.boxes.end(), boxes->begin(), boxes->end());
-    } else {
-      return {};
-    }
-  }
-  if (options.boxes.empty()) {
-    // Squares with smooth numbers of intervals; then neighbouring sizes with a prime number or
-    // twice a prime; then longer boxes.
-    for (const int side : {51, 101, 201, 401, 701, 1001, 2001})
-      options.boxes.emplace_back(side, side);
-    for (const int side : {102, 198, 402, 398, 720}) options.boxes.emplace_back(side, side);
-    options.boxes.insert(options.boxes.end(), {{101, 801}, {801, 101}, {31, 2001}});
-  }
-  return options;
 }
 
 }  // namespace
 
 int main(int count, char* arguments[]) {
-  const auto options = parse(count, arguments);
-  if (!options) {
-    fmt::print(
-        stderr,
-        "usage: plate [--boxes 51,101x801,...] [--direct SIDE] [--threads N] [--csv FILE]\n");
-    return 2;
-  }
-  ThreadPool threads(options->threads);
+  Options options;
+  const bool are_right =
+      read_options(count, arguments,
+                   {{"--boxes", &options.boxes},
+                    {"--direct", &options.direct_side},
+                    {"--threads", &options.threads},
+                    {"--csv", &options.csv}},
+                   "plate [--boxes 51,101x801,...] [--direct SIDE] [--threads N] [--csv FILE]");
+  const auto boxes = parse_boxes(options.boxes);
+  if (!are_right || boxes.empty()) return 2;
+  ThreadPool threads(options.threads);
   fmt::print("kernels {}, {} thread(s); times in ms; times as long: new / kept\n\n",
              runnable_kernels(0)->name, threads.thread_count());
   fmt::print(
@@ -252,14 +216,14 @@ int main(int count, char* arguments[]) {
       "| "
       "eigen | doubles a node |\n|---|---|---|---|---|---|---|---|---|---|\n");
   std::vector<Row> rows_done;
-  for (const auto& [columns, rows] : options->boxes) {
-    rows_done.push_back(measure(columns, rows, *options, threads));
+  for (const auto& [columns, rows] : boxes) {
+    rows_done.push_back(measure(columns, rows, options, threads));
     print_row(rows_done.back());
   }
-  if (options->csv.empty()) return 0;
-  std::FILE* const file = std::fopen(options->csv.c_str(), "w");
+  if (options.csv.empty()) return 0;
+  std::FILE* const file = std::fopen(options.csv.c_str(), "w");
   if (!file) {
-    fmt::print(stderr, "plate: cannot write {}\n", options->csv);
+    fmt::print(stderr, "plate: cannot write {}\n", options.csv);
     return 1;
   }
   fmt::print(file,

@@ -102,28 +102,15 @@ void measure(int side, const Options& options) {
       solved.sum / options.count / interval, solved.most / interval, 1e3 * backwards / frame_count);
 }
 
-bool parse(int count, char* arguments[], Options& options) {
-  for (int k = 1; k < count; k += 2) {
-    if (k + 1 == count) return false;
-    const std::string_view name = arguments[k];
-    const std::string_view value = arguments[k + 1];
-    const bool is_known =
-        (name == "--room" && read_number(value, options.room)) ||
-        (name == "--count" && read_number(value, options.count) && options.count >= 1) ||
-        (name == "--sides" && read_sides(value, options.sides));
-    if (!is_known) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 int main(int count, char* arguments[]) {
   Options options;
-  if (!parse(count, arguments, options)) {
-    fmt::print(stderr, "usage: random_access [--sides 51,101,...] [--room MIB] [--count N]\n");
+  if (!read_options(
+          count, arguments,
+          {{"--sides", &options.sides}, {"--room", &options.room}, {"--count", &options.count}},
+          "random_access [--sides 51,101,...] [--room MIB] [--count N]"))
     return 2;
-  }
   fmt::print("{:>5} {:>5} {:>8} {:>8} {:>17} {:>13} {:>13} {:>9}\n", "side", "room", "interval",
              "played", "random", "share", "solved", "backwards");
   for (const int side : options.sides) measure(side, options);

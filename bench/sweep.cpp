@@ -9,7 +9,7 @@
 //   table      takes.csv written [s]
 //   memory     the most that the process had [MB]
 //
-// Run: build/release/bench/sweep [SCENE] [--takes N] [--vary PATH=VALUES] [--million N]
+// Run: build/release/bench/sweep [--scene SCENE] [--takes N] [--vary PATH=VALUES] [--million N]
 
 #include <algorithm>
 #include <atomic>
@@ -146,18 +146,13 @@ void measure_million(const Options& options, const Scratch& scratch) {
 
 int main(int count, char* arguments[]) {
   Options options;
-  for (int k = 1; k < count; ++k) {
-    const std::string_view word = arguments[k];
-    if (word == "--takes" && k + 1 < count) {
-      options.takes = std::atoi(arguments[++k]);
-    } else if (word == "--vary" && k + 1 < count) {
-      options.vary = arguments[++k];
-    } else if (word == "--million" && k + 1 < count) {
-      options.million = std::atoi(arguments[++k]);
-    } else {
-      options.scene = word;
-    }
-  }
+  if (!read_options(count, arguments,
+                    {{"--scene", &options.scene},
+                     {"--takes", &options.takes},
+                     {"--vary", &options.vary},
+                     {"--million", &options.million}},
+                    "sweep [--scene SCENE] [--takes N] [--vary PATH=VALUES] [--million N]"))
+    return 2;
   const Scratch scratch;
   if (options.million > 0) measure_million(options, scratch);
   if (options.takes > 0) measure_takes(options, scratch);
