@@ -151,6 +151,27 @@ def format_of_many_curves(folder, n):
     return ["format", scene(folder, keyed(n, 2))]
 
 
+def keys_of(folder, n, tangent, more=""):
+    keys = "".join(f'<key frame="{0.01 * k}" value="{k % 7}"{more}/>' for k in range(n))
+    return ["validate", scene(folder, f'<point name="f"><animate attribute="magnitude" tangent="{tangent}">{keys}'
+                                      "</animate></point>")]
+
+
+@kind(2000)
+def automatic_keys(folder, n):
+    return keys_of(folder, n, "auto")
+
+
+@kind(2000)
+def keys_of_a_spline(folder, n):
+    return keys_of(folder, n, "spline")
+
+
+@kind(2000)
+def keys_with_tangents(folder, n):
+    return keys_of(folder, n, "auto", ' in="flat" out="1.5" inLength="0.002" outLength="0.002"')
+
+
 # Mesh files
 
 def mesh(folder, name, content, *, info=False, out=None, more=""):
