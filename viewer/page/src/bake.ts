@@ -305,19 +305,8 @@ export async function unpack(packed: Uint8Array<ArrayBuffer>): Promise<Bake> {
 
 /** The bytes of a base 64 text. */
 export function bytesOf(base64: string): Uint8Array<ArrayBuffer> {
-  const digits = new Uint8Array(128);
-  [..."ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/"].forEach((digit, value) => (digits[digit.charCodeAt(0)] = value));
-  const padding = base64.endsWith("==") ? 2 : base64.endsWith("=") ? 1 : 0;
-  const bytes = new Uint8Array((base64.length / 4) * 3 - padding);
-  for (let read = 0, write = 0; read < base64.length; read += 4) {
-    const bits =
-      (digits[base64.charCodeAt(read)] << 18) |
-      (digits[base64.charCodeAt(read + 1)] << 12) |
-      (digits[base64.charCodeAt(read + 2)] << 6) |
-      digits[base64.charCodeAt(read + 3)];
-    bytes[write++] = bits >> 16;
-    bytes[write++] = bits >> 8; // writes past the end of the array are ignored
-    bytes[write++] = bits;
-  }
+  const letters = atob(base64); // one for each byte
+  const bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; ++k) bytes[k] = letters.charCodeAt(k);
   return bytes;
 }
