@@ -1,12 +1,12 @@
 // The forces that are shown: all except hidden ones, or only some chosen ones.
 
 import type { Force } from "./bake";
+import { Changing } from "./changing";
 
-export class ForceChoice {
+export class ForceChoice extends Changing {
   /** Names, also of forces that do not exist at present: a save may bring them back. */
   private readonly hidden = new Set<string>();
   private readonly alone = new Set<string>();
-  private readonly listeners: (() => void)[] = [];
 
   /**
    * A force shown alone is shown even if it is hidden. The choice for a group is also valid for its
@@ -61,13 +61,5 @@ export class ForceChoice {
     }
     // Names contain no commas, and an address may contain them: easier to read.
     return words.toString().replaceAll("%2C", ",");
-  }
-
-  onChange(listener: () => void): void {
-    this.listeners.push(listener);
-  }
-
-  private tell(): void {
-    for (const listener of this.listeners) listener();
   }
 }

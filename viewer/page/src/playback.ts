@@ -1,6 +1,8 @@
 // The time that is shown: a whole frame, or with `isBetween` also between frames.
 
-export class Playback {
+import { Changing } from "./changing";
+
+export class Playback extends Changing {
   isPlaying = false;
   isLooping = true;
   speed = 1;
@@ -11,7 +13,6 @@ export class Playback {
   fps = 24;
   private now = 0;
   private lastTick = 0;
-  private readonly listeners: (() => void)[] = [];
 
   /** Loads a range of frames. The frame shown stays if it is in the range, unless `isNew`. */
   load(first: number, last: number, fps: number, isNew: boolean): void {
@@ -32,10 +33,6 @@ export class Playback {
 
   get time(): number {
     return this.isBetween ? this.now : this.frame;
-  }
-
-  onChange(listener: () => void): void {
-    this.listeners.push(listener);
   }
 
   goTo(frame: number): void {
@@ -90,8 +87,4 @@ export class Playback {
     if (this.time !== shown || !this.isPlaying) this.tell();
     if (this.isPlaying) requestAnimationFrame(this.tick);
   };
-
-  private tell(): void {
-    for (const listener of this.listeners) listener();
-  }
 }

@@ -1,5 +1,7 @@
 // Light or dark: the system's choice, unless the user chooses.
 
+import { Changing } from "./changing";
+
 export type Theme = "light" | "dark";
 
 /** Colours of the drawings on canvases and the stage; those of the page are in style.css. */
@@ -39,12 +41,12 @@ const palettes: Record<Theme, Palette> = {
   },
 };
 
-export class ThemeChoice {
+export class ThemeChoice extends Changing {
   private readonly system = matchMedia("(prefers-color-scheme: light)");
   private chosen: Theme | null = null;
-  private readonly listeners: (() => void)[] = [];
 
   constructor() {
+    super();
     this.system.addEventListener("change", () => this.apply());
     this.apply();
   }
@@ -66,12 +68,8 @@ export class ThemeChoice {
     this.choose(this.theme === "dark" ? "light" : "dark");
   }
 
-  onChange(listener: () => void): void {
-    this.listeners.push(listener);
-  }
-
   private apply(): void {
     document.documentElement.dataset.theme = this.theme;
-    for (const listener of this.listeners) listener();
+    this.tell();
   }
 }

@@ -1,11 +1,11 @@
 // Which take is pointed at, in all parts of the page.
 
-type Listener = (row: number | null, source: unknown) => void;
+import { Changing } from "../changing";
 
-export class Pointing {
+/** Tells the row pointed at, and the part of the page that did it. */
+export class Pointing extends Changing<[row: number | null, source: unknown]> {
   private pointed: number | null = null;
   private kept: number | null = null;
-  private readonly listeners: Listener[] = [];
 
   /** The row pointed at, else the one that was kept by a click. */
   get row(): number | null {
@@ -20,27 +20,19 @@ export class Pointing {
   point(row: number | null, source: unknown): void {
     if (row === this.pointed) return;
     this.pointed = row;
-    this.tell(source);
+    this.tell(this.row, source);
   }
 
   /** Keeps a row; the same row again: lets it go. */
   toggle(row: number | null, source: unknown): void {
     this.kept = row === this.kept ? null : row;
-    this.tell(source);
+    this.tell(this.row, source);
   }
 
   /** Keeps a row wherever the pointer is, for keys; null: none. */
   keep(row: number | null, source: unknown): void {
     this.kept = row;
     this.pointed = null;
-    this.tell(source);
-  }
-
-  onChange(listener: Listener): void {
-    this.listeners.push(listener);
-  }
-
-  private tell(source: unknown): void {
-    for (const listener of this.listeners) listener(this.row, source);
+    this.tell(this.row, source);
   }
 }
