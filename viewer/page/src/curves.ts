@@ -2,6 +2,7 @@
 
 import type { Channel } from "./bake";
 import { CurvePlot, nameOf, valueAt, valueText, type Curve, type CurvePicture, type Hover } from "./curve_plot";
+import { make } from "./element";
 import type { FrameAxis } from "./frame_axis";
 import type { Playback } from "./playback";
 import type { ThemeChoice } from "./theme";
@@ -103,38 +104,25 @@ export class CurvePanel {
   // shown.
   private tell({ curves, hover }: CurvePicture): void {
     const frame = hover?.frame ?? this.playback.frame;
-    const head = document.createElement("p");
-    head.textContent = `frame ${frame}`;
-    this.values.replaceChildren(head, ...curves.map((curve) => this.valueRow(curve, frame, curve.channel === hover?.curve?.channel && curve.component === hover.curve.component)));
+    this.values.replaceChildren(make("p", {}, `frame ${frame}`), ...curves.map((curve) => this.valueRow(curve, frame, curve.channel === hover?.curve?.channel && curve.component === hover.curve.component)));
   }
 
   private valueRow(curve: Curve, frame: number, isNear: boolean): HTMLElement {
-    const row = document.createElement("span");
-    row.className = isNear ? "near" : "";
-    row.title = nameOf(curve);
-    const label = document.createElement("span");
-    label.textContent = nameOf(curve);
-    const value = document.createElement("b");
+    const name = nameOf(curve);
     const number = valueAt(curve, frame);
-    value.textContent = number === undefined ? "–" : valueText(number);
-    row.append(swatch(curve), label, value);
-    return row;
+    const value = make("b", {}, number === undefined ? "–" : valueText(number));
+    return make("span", { className: isNear ? "near" : "", title: name }, swatch(curve), make("span", {}, name), value);
   }
 
   private fillList(): void {
     this.giveColours();
     this.list.replaceChildren(
       ...this.channels.map((channel, k) => {
-        const option = document.createElement("div");
-        option.setAttribute("role", "option");
-        option.id = `channel-${k}`;
-        option.title = channel.path;
         const isShown = this.chosen.has(channel.path);
-        option.setAttribute("aria-selected", String(isShown));
-        const label = document.createElement("span");
         // A long path may break after the name of its element.
-        label.append(...channel.path.split(/(?<=\.)/).flatMap((part, n) => (n === 0 ? [part] : [document.createElement("wbr"), part])));
-        option.append(label, ...(isShown ? this.curvesOf(channel).map(swatch) : []));
+        const label = make("span", {}, ...channel.path.split(/(?<=\.)/).flatMap((part, n) => (n === 0 ? [part] : [make("wbr"), part])));
+        const properties = { role: "option", id: `channel-${k}`, title: channel.path, ariaSelected: String(isShown) };
+        const option = make("div", properties, label, ...(isShown ? this.curvesOf(channel).map(swatch) : []));
         option.addEventListener("click", (event) => this.choose(k, event.ctrlKey || event.metaKey || event.shiftKey));
         return option;
       }),
@@ -167,8 +155,7 @@ export class CurvePanel {
 const componentsOf = ({ components }: Channel) => (components === 1 ? [""] : names.slice(0, components));
 
 function swatch(curve: Curve): HTMLElement {
-  const mark = document.createElement("i");
+  const mark = make("i", { title: curve.part });
   mark.style.background = curve.dash.length === 0 ? curve.colour : `repeating-linear-gradient(to right, ${curve.colour} 0 3px, transparent 3px 5px)`;
-  mark.title = curve.part;
   return mark;
 }

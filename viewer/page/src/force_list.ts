@@ -1,6 +1,7 @@
 // The list of forces and groups, with controls to show or hide each, or to show it alone.
 
 import type { Force } from "./bake";
+import { make } from "./element";
 import type { ForceChoice } from "./force_choice";
 
 /** First the forces without a group, then each group followed by its forces. */
@@ -40,25 +41,13 @@ export class ForceList {
   }
 
   private row({ name, kind, group }: Force): HTMLElement {
-    const item = document.createElement("li");
-    item.classList.toggle("within", group !== undefined);
-    const label = document.createElement("label");
-    const box = document.createElement("input");
-    box.type = "checkbox";
+    const box = make("input", { type: "checkbox" });
     box.addEventListener("change", () => this.choice.hide(name, !box.checked));
-    const word = document.createElement("span");
-    word.textContent = name;
-    label.append(box, word);
-    const kindOf = document.createElement("span");
-    kindOf.textContent = kind;
-    const solo = document.createElement("button");
-    solo.type = "button";
-    solo.textContent = "solo";
-    solo.setAttribute("aria-label", `Show ${name} alone`);
-    solo.title = `Show ${name} alone`;
+    const title = `Show ${name} alone`;
+    const solo = make("button", { type: "button", title, ariaLabel: title }, "solo");
     solo.addEventListener("click", () => this.choice.solo(name, !this.choice.isAlone(name)));
-    item.append(label, kindOf, solo);
-    return item;
+    const label = make("label", {}, box, make("span", {}, name));
+    return make("li", { className: group === undefined ? "" : "within" }, label, make("span", {}, kind), solo);
   }
 
   private update(): void {

@@ -3,6 +3,7 @@
 import type { Bake } from "./bake";
 import type { Area } from "./labels";
 import { numberText } from "./curve_plot";
+import { make } from "./element";
 import { ramps } from "./surface_view";
 import type { Palette } from "./theme";
 import type { Viewer } from "./viewer";
@@ -73,11 +74,9 @@ export function showLegend(place: HTMLElement, legend: Legend | null): void {
   }
   part("inks").replaceChildren(
     ...legend.inks.map(({ colour, means }) => {
-      const item = document.createElement("span");
-      const mark = document.createElement("i");
+      const mark = make("i");
       mark.style.background = colour;
-      item.append(mark, means);
-      return item;
+      return make("span", {}, mark, means);
     }),
   );
 }

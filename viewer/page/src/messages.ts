@@ -1,18 +1,13 @@
 // The command's messages about the scene: errors, warnings, notes, each with its line.
 
 import type { Message } from "./bake";
+import { make } from "./element";
 
 export function showMessages(place: HTMLElement, messages: Message[]): void {
   place.replaceChildren(
     ...messages.map(({ kind, line, text, file }) => {
-      const item = document.createElement("p");
-      item.className = `message ${kind}`;
-      const where = [file, line > 0 ? `line ${line}` : ""].filter(Boolean).join(", ");
-      const head = document.createElement("b");
-      head.textContent = where === "" ? kind : `${kind}, ${where}`;
-      const body = document.createElement("span");
-      body.textContent = text;
-      item.append(head, body);
+      const where = [kind, file, line > 0 ? `line ${line}` : ""].filter(Boolean).join(", ");
+      const item = make("p", { className: `message ${kind}` }, make("b", {}, where), make("span", {}, text));
       if (kind !== "error") item.append(closeButton(item));
       return item;
     }),
@@ -20,10 +15,7 @@ export function showMessages(place: HTMLElement, messages: Message[]): void {
 }
 
 function closeButton(item: HTMLElement): HTMLButtonElement {
-  const close = document.createElement("button");
-  close.type = "button";
-  close.textContent = "×";
-  close.setAttribute("aria-label", "Dismiss");
+  const close = make("button", { type: "button", ariaLabel: "Dismiss" }, "×");
   close.addEventListener("click", () => item.remove());
   return close;
 }

@@ -2,6 +2,7 @@
 
 import * as THREE from "three";
 
+import { make } from "./element";
 import type { Stage } from "./stage";
 import type { SurfaceView } from "./surface_view";
 import type { ThemeChoice } from "./theme";
@@ -66,15 +67,7 @@ export class Readout {
       ["velocity", `${fixed(view.speed[vertex])} /s`],
     ];
     this.output.replaceChildren(
-      ...lines.map(([label, text]) => {
-        const row = document.createElement("span");
-        const what = document.createElement("span");
-        what.textContent = label;
-        const value = document.createElement("b");
-        value.textContent = text;
-        row.append(what, value);
-        return row;
-      }),
+      ...lines.map(([label, text]) => make("span", {}, make("span", {}, label), make("b", {}, text))),
     );
   }
 

@@ -1,5 +1,6 @@
 // Pictures of takes side by side.
 
+import { make } from "../element";
 import type { ThemeChoice } from "../theme";
 import type { Pointing } from "./pointing";
 import type { Studio } from "./studio";
@@ -85,34 +86,13 @@ export class ContactSheet {
   private tile(shape: TakeShape): Tile {
     const { sweep, pointing } = this;
     const { row, frame } = shape;
-    const element = document.createElement("button");
-    element.type = "button";
-    element.className = "tile";
-    element.dataset.row = String(row);
-    const canvas = document.createElement("canvas");
-    canvas.setAttribute("aria-hidden", "true");
-    const head = document.createElement("span");
-    head.className = "head";
-    const number = document.createElement("b");
-    number.textContent = String(sweep.takes[row]);
-    const at = document.createElement("span");
-    at.textContent = `frame ${frame}`;
-    head.append(number, at);
-    const values = document.createElement("span");
-    values.className = "values";
-    for (const [name, value] of sweep.captions(row, mostValues)) {
-      const line = document.createElement("span");
-      line.className = "line";
-      const [left, right] = [document.createElement("span"), document.createElement("b")];
-      left.textContent = name;
-      right.textContent = value;
-      line.append(left, right);
-      values.append(line);
-    }
+    const canvas = make("canvas", { ariaHidden: "true" });
+    const head = make("span", { className: "head" }, make("b", {}, String(sweep.takes[row])), make("span", {}, `frame ${frame}`));
+    const lines = sweep.captions(row, mostValues).map(([name, value]) => make("span", { className: "line" }, make("span", {}, name), make("b", {}, value)));
     const words = sweep.captions(row, Infinity).map((each) => each.join(" ")).join(", ");
-    element.setAttribute("aria-label", `take ${sweep.takes[row]}, frame ${frame}, ${words}`);
-    element.setAttribute("aria-pressed", "false");
-    element.append(canvas, head, values);
+    const ariaLabel = `take ${sweep.takes[row]}, frame ${frame}, ${words}`;
+    const element = make("button", { type: "button", className: "tile", ariaLabel, ariaPressed: "false" }, canvas, head, make("span", { className: "values" }, ...lines));
+    element.dataset.row = String(row);
     element.addEventListener("pointerenter", () => pointing.point(row, this));
     element.addEventListener("pointerleave", () => pointing.point(null, this));
     element.addEventListener("focus", () => element.matches(":focus-visible") && pointing.point(row, this));

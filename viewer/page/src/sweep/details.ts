@@ -1,12 +1,13 @@
 // Everything about the take that is pointed at, and the command that writes it.
 
+import { make, makeSvg } from "../element";
 import type { ThemeChoice } from "../theme";
 import type { Pointing } from "./pointing";
 import type { Studio } from "./studio";
 import { commandOf, measureText, textOf, type Sweep } from "./sweep";
 
 export class Details {
-  private readonly canvas = document.createElement("canvas");
+  private readonly canvas = make("canvas", { className: "picture" });
 
   constructor(
     private readonly place: HTMLElement,
@@ -15,7 +16,6 @@ export class Details {
     private readonly pointing: Pointing,
     themes: ThemeChoice,
   ) {
-    this.canvas.className = "picture";
     pointing.onChange(() => this.show());
     themes.onChange(() => this.draw());
     new ResizeObserver(() => this.draw()).observe(place);
@@ -50,69 +50,48 @@ export class Details {
 
   /** The least and the greatest of each measure, which lead to their takes. */
   private ranges(): HTMLElement {
-    const table = part("table", "", "ranges");
-    const head = part("tr", "");
-    head.append(part("th", ""), part("th", "least"), part("th", "greatest"));
-    table.append(head);
-    for (const measure of this.sweep.measures) {
-      const ends = endsOf(measure.values);
-      const line = part("tr", "");
-      const name = part("th", measure.name);
-      name.title = `${measure.about} [${measure.unit}]`;
-      line.append(name);
-      for (const row of ends ?? []) {
-        const button = part("button", measureText(measure, row));
-        button.type = "button";
-        button.title = `take ${this.sweep.takes[row]}`;
+    const lines = this.sweep.measures.map((measure) => {
+      const line = make("tr", {}, make("th", { title: `${measure.about} [${measure.unit}]` }, measure.name));
+      for (const row of endsOf(measure.values) ?? []) {
+        const button = make("button", { type: "button", title: `take ${this.sweep.takes[row]}` }, measureText(measure, row));
         button.addEventListener("click", () => this.pointing.keep(row, this));
-        const cell = part("td", "");
-        cell.append(button);
-        line.append(cell);
+        line.append(make("td", {}, button));
       }
-      table.append(line);
-    }
-    return table;
+      return line;
+    });
+    const head = make("tr", {}, make("th"), make("th", {}, "least"), make("th", {}, "greatest"));
+    return make("table", { className: "ranges" }, head, ...lines);
   }
 
   private show(): void {
     const { sweep, pointing } = this;
     const { row } = pointing;
     if (row === null) {
-      const hint = part("p", "Point at a take in any part of the page; click to keep it.", "quiet");
-      this.place.replaceChildren(part("h2", "All takes"), this.ranges(), hint);
+      const hint = make("p", { className: "quiet" }, "Point at a take in any part of the page; click to keep it.");
+      this.place.replaceChildren(make("h2", {}, "All takes"), this.ranges(), hint);
       return;
     }
     const shape = sweep.shape(row);
     const state = sweep.stateOf(row);
-    const title = part("h2", `Take ${sweep.takes[row]}`);
-    if (state !== "done") title.append(part("span", state, `state ${state}`));
-    else if (shape) title.append(part("span", `frame ${shape.frame}`, "quiet"));
+    const title = make("h2", {}, `Take ${sweep.takes[row]}`);
+    if (state !== "done") title.append(make("span", { className: `state ${state}` }, state));
+    else if (shape) title.append(make("span", { className: "quiet" }, `frame ${shape.frame}`));
     const parts: HTMLElement[] = [title, this.canvas];
-    if (state === "failed") parts.push(part("p", sweep.errorOf(row), "error"));
+    if (state === "failed") parts.push(make("p", { className: "error" }, sweep.errorOf(row)));
     if (state === "done" && !shape) {
       const failure = sweep.head.failures.find(({ take }) => take === sweep.takes[row]);
-      parts.push(failure ? part("p", failure.text, "error") : part("p", "This take is not among the pictures.", "quiet"));
+      parts.push(failure ? make("p", { className: "error" }, failure.text) : make("p", { className: "quiet" }, "This take is not among the pictures."));
     }
     if (shape && shape.shown < shape.vertices)
-      parts.push(part("p", `Drawn with ${shape.shown.toLocaleString("en")} of its ${shape.vertices.toLocaleString("en")} vertices.`, "quiet"));
+      parts.push(make("p", { className: "quiet" }, `Drawn with ${shape.shown.toLocaleString("en")} of its ${shape.vertices.toLocaleString("en")} vertices.`));
     parts.push(list(sweep.paths.map((path) => [path.title, textOf(path, row), ""])));
     if (state === "done") {
       parts.push(list(sweep.measures.map((measure) => [measure.name, measureText(measure, row), `${measure.about} [${measure.unit}]`])));
     }
-    const command = part("div", "", "command");
-    const copy = document.createElement("button");
-    copy.type = "button";
-    copy.className = "copy";
-    copy.title = "Copy the command (C)";
-    const icon = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-    const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
-    use.setAttribute("href", "#icon-copy");
-    icon.setAttribute("aria-hidden", "true");
-    icon.append(use);
-    copy.append(icon, part("span", "Copy"));
+    const icon = makeSvg("svg", { "aria-hidden": "true" }, makeSvg("use", { href: "#icon-copy" }));
+    const copy = make("button", { type: "button", className: "copy", title: "Copy the command (C)" }, icon, make("span", {}, "Copy"));
     copy.addEventListener("click", () => void this.copy());
-    command.append(part("code", commandOf(sweep, row)), copy);
-    parts.push(command);
+    parts.push(make("div", { className: "command" }, make("code", {}, commandOf(sweep, row)), copy));
     this.place.replaceChildren(...parts);
     this.draw();
   }
@@ -129,21 +108,8 @@ function endsOf(values: Float64Array): [number, number] | null {
   return least < 0 ? null : [least, greatest];
 }
 
-function part<K extends keyof HTMLElementTagNameMap>(name: K, text: string, className = ""): HTMLElementTagNameMap[K] {
-  const element = document.createElement(name);
-  element.textContent = text;
-  element.className = className;
-  return element;
-}
-
 function list(lines: [string, string, string][]): HTMLElement {
-  const all = document.createElement("dl");
-  for (const [name, value, about] of lines) {
-    const title = part("dt", name);
-    title.title = about || name;
-    all.append(title, part("dd", value));
-  }
-  return all;
+  return make("dl", {}, ...lines.flatMap(([name, value, about]) => [make("dt", { title: about || name }, name), make("dd", {}, value)]));
 }
 
 /** A page that was opened from a file may have no clipboard; then the text is selected. */

@@ -3,6 +3,7 @@
 import * as Plot from "@observablehq/plot";
 
 import { numberText } from "../curve_plot";
+import { make } from "../element";
 import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
 import { axisLook, TakePlot, type Area, type Mark } from "./plot";
@@ -58,11 +59,9 @@ export class HeatMap extends TakePlot {
     const { low, high, isLog } = this.range;
     const ends = [numberText(low), numberText(high)];
     this.label = `${spec.measure.name} [${spec.measure.unit}]: ${spec.about}, from ${ends.join(" to ")}`;
-    const colours = document.createElement("p");
-    const ramp = document.createElement("i");
+    const ramp = make("i");
     ramp.style.background = velocityRamp.css();
-    colours.append(ends[0], ramp, ends[1], isLog ? " (log)" : "");
-    this.place.before(colours);
+    this.place.before(make("p", {}, ends[0], ramp, ends[1], isLog ? " (log)" : ""));
   }
 
   protected options(): Plot.PlotOptions {

@@ -128,7 +128,7 @@ function load(sweep: Sweep): { apply: (look: Look) => void; sheet: ContactSheet 
     for (const [value, text] of [[`${k}`, title], [`-${k}`, `${title}, falling`]]) order.add(new Option(text, value));
   });
   order.addEventListener("change", () => table.sort(Math.abs(Number(order.value)), order.value.startsWith("-")));
-  table.onSort(() => {
+  table.onChange(() => {
     order.value = `${table.isDescending ? "-" : ""}${table.sortedBy}`;
     sheet.order(table.order);
   });

@@ -3,6 +3,7 @@
 
 import * as Plot from "@observablehq/plot";
 
+import { make, makeSvg } from "../element";
 import type { Palette, ThemeChoice } from "../theme";
 import { isAsLargeAsSeen, prepare } from "../timeline";
 import type { Pointing } from "./pointing";
@@ -27,12 +28,6 @@ export interface Mark {
   ground: number;
 }
 
-const svg = <K extends keyof SVGElementTagNameMap>(name: K, attributes: Record<string, string | number> = {}) => {
-  const one = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) one.setAttribute(key, String(value));
-  return one;
-};
-
 /** What is the same in all plots: their class is that of the style that the page's policy allows. */
 export const around = { inset: 6, marginLeft: 52, marginRight: 10, marginTop: 6, marginBottom: 36, className: "takes" } as const;
 
@@ -41,12 +36,11 @@ export const axisLook = { tickSize: 0, labelAnchor: "center", labelArrow: "none"
 
 /** Draws when it is seen. The marks of the take pointed at are above the drawing, which stays. */
 export abstract class TakePlot {
-  readonly element = document.createElement("figure");
-  protected readonly place = document.createElement("div");
-  private readonly caption = document.createElement("figcaption");
-  private readonly value = document.createElement("b");
-  private readonly canvas = document.createElement("canvas");
-  private readonly marks = svg("svg", { "aria-hidden": "true" });
+  readonly element: HTMLElement;
+  protected readonly place = make("div", { role: "img" });
+  private readonly value = make("b");
+  private readonly canvas = make("canvas");
+  private readonly marks = makeSvg("svg", { "aria-hidden": "true" });
   private axes: Element | null = null;
   private isStale = true;
   private isSeen = false;
@@ -58,19 +52,13 @@ export abstract class TakePlot {
     protected readonly pointing: Pointing,
     protected readonly themes: ThemeChoice,
   ) {
-    this.element.className = "plot";
-    const name = document.createElement("span");
-    name.textContent = title;
-    const measured = document.createElement("small");
-    measured.textContent = `[${unit}]`;
-    this.caption.title = `${about} [${unit}]`;
-    this.caption.append(name, measured, this.value);
-    this.place.setAttribute("role", "img");
+    const measured = make("small", {}, `[${unit}]`);
+    const caption = make("figcaption", { title: `${about} [${unit}]` }, make("span", {}, title), measured, this.value);
+    this.element = make("figure", { className: "plot" }, caption, this.place);
     this.label = `${title} [${unit}]: ${about}`;
     // In the processor's memory: a hundred thousand points are no work for graphics.
     this.canvas.getContext("2d", { willReadFrequently: true });
     this.place.append(this.canvas, this.marks);
-    this.element.append(this.caption, this.place);
     this.place.addEventListener("pointermove", (event) => {
       const box = this.place.getBoundingClientRect();
       this.pointing.point(this.rowAt(event.clientX - box.left, event.clientY - box.top), this);
@@ -118,7 +106,7 @@ export abstract class TakePlot {
     this.value.textContent = row === null ? "" : this.textAt(row);
     const at = row === null ? null : this.placeAt(row);
     this.marks.replaceChildren(...(at ? this.marksOf(at, palette, row!) : []).flatMap(({ shape, at, colour, width, ground }) =>
-      ([[palette.panel, ground], [colour, width]] as const).map(([stroke, wide]) => svg(shape, { ...at, stroke, "stroke-width": wide, fill: "none" }))));
+      ([[palette.panel, ground], [colour, width]] as const).map(([stroke, wide]) => makeSvg(shape, { ...at, stroke, "stroke-width": wide, fill: "none" }))));
   }
 
   protected abstract options(): Plot.PlotOptions;

@@ -1,5 +1,6 @@
 // The plots of all measures: over each PATH, or maps over two axes.
 
+import { make } from "../element";
 import { velocityRamp } from "../ramp";
 import type { Palette, ThemeChoice } from "../theme";
 import { HeatMap } from "./heat_map";
@@ -113,26 +114,19 @@ export class PlotGrid {
 
   /** The title of a column, and what its colours mean. */
   private head(path: Path, colours: Colours): HTMLElement {
-    const head = document.createElement("div");
-    head.className = "column";
-    const title = document.createElement("b");
-    title.textContent = `over ${path.title}`;
-    head.append(title);
+    const head = make("div", { className: "column" }, make("b", {}, `over ${path.title}`));
     const { texts } = colours;
     // Many values have a ramp between the names of the first and the last.
     const items = colours.isRamp ? [texts.length - 1] : [...texts.keys()];
     for (const step of items) {
-      const item = document.createElement("span");
-      const mark = document.createElement("i");
-      mark.classList.toggle("wide", colours.isRamp);
+      const mark = make("i", { className: colours.isRamp ? "wide" : "" });
       const dress = (palette: Palette) => {
         const shades = colours.of(palette);
         mark.style.background = colours.isRamp ? `linear-gradient(to right, ${shades.join(", ")})` : shades[step];
       };
       dress(this.themes.palette);
       this.legends.push(dress);
-      item.append(...(colours.isRamp ? [texts[0], mark, texts[step].slice(colours.name.length)] : [mark, texts[step]]));
-      head.append(item);
+      head.append(make("span", {}, ...(colours.isRamp ? [texts[0], mark, texts[step].slice(colours.name.length)] : [mark, texts[step]])));
     }
     return head;
   }

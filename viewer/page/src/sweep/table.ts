@@ -1,5 +1,7 @@
 // The table of takes. Only the rows in the window are in the page, however many there are.
 
+import { Changing } from "../changing";
+import { make } from "../element";
 import type { Pointing } from "./pointing";
 import { measureText, textOf, type Sweep } from "./sweep";
 
@@ -35,16 +37,16 @@ export function columnsOf(sweep: Sweep): Column[] {
   ];
 }
 
-export class TakeTable {
+/** Tells when it has sorted. */
+export class TakeTable extends Changing {
   readonly columns: Column[];
   /** The rows of the sweep in the order of the table. */
   readonly order: Uint32Array;
   sortedBy = 0;
   isDescending = false;
-  private readonly body = document.createElement("tbody");
+  private readonly body = make("tbody");
   private readonly heads: HTMLTableCellElement[];
   private readonly ranks: Uint32Array;
-  private readonly listeners: (() => void)[] = [];
   private shownFrom = -1;
 
   constructor(
@@ -52,32 +54,21 @@ export class TakeTable {
     sweep: Sweep,
     private readonly pointing: Pointing,
   ) {
+    super();
     this.columns = columnsOf(sweep);
     this.order = Uint32Array.from({ length: sweep.rowCount }, (_, row) => row);
     this.ranks = this.order.slice();
-    const table = document.createElement("table");
-    table.setAttribute("aria-rowcount", String(sweep.rowCount + 1));
-    const widths = document.createElement("colgroup");
-    const head = document.createElement("thead");
-    const titles = document.createElement("tr");
+    const widths = make("colgroup");
     this.heads = this.columns.map((column, k) => {
-      const cell = document.createElement("th");
-      cell.scope = "col";
-      const button = document.createElement("button");
-      button.type = "button";
-      button.textContent = column.title;
+      const button = make("button", { type: "button" }, column.title);
       button.addEventListener("click", () => this.sort(k, this.sortedBy === k && !this.isDescending));
-      cell.append(button);
-      cell.classList.toggle("number", column.isNumber);
-      titles.append(cell);
-      const width = document.createElement("col");
+      const width = make("col");
       width.style.width = `${widthOf(column, sweep)}ch`;
       widths.append(width);
-      return cell;
+      return make("th", { scope: "col", className: column.isNumber ? "number" : "" }, button);
     });
-    head.append(titles);
-    table.append(widths, head, this.body);
-    place.replaceChildren(table);
+    const head = make("thead", {}, make("tr", {}, ...this.heads));
+    place.replaceChildren(make("table", { ariaRowCount: String(sweep.rowCount + 1) }, widths, head, this.body));
     place.style.setProperty("--rows", String(Math.min(sweep.rowCount, 18)));
     place.addEventListener("scroll", () => this.show());
     new ResizeObserver(() => this.show(true)).observe(place);
@@ -123,11 +114,7 @@ export class TakeTable {
     this.markSort();
     this.place.scrollTop = 0;
     this.show(true);
-    for (const listener of this.listeners) listener();
-  }
-
-  onSort(listener: () => void): void {
-    this.listeners.push(listener);
+    this.tell();
   }
 
   /** The row `step` further in the order; from none, the first. */
@@ -138,7 +125,7 @@ export class TakeTable {
 
   private markSort(): void {
     this.heads.forEach((cell, k) => {
-      if (k === this.sortedBy) cell.setAttribute("aria-sort", this.isDescending ? "descending" : "ascending");
+      if (this.sortedBy === k) cell.setAttribute("aria-sort", this.isDescending ? "descending" : "ascending");
       else cell.removeAttribute("aria-sort");
     });
   }
@@ -168,16 +155,12 @@ export class TakeTable {
 
   private line(rank: number): HTMLElement {
     const row = this.order[rank];
-    const line = document.createElement("tr");
+    const line = make("tr", { ariaRowIndex: String(rank + 2) });
     line.dataset.row = String(row);
-    line.setAttribute("aria-rowindex", String(rank + 2));
     for (const column of this.columns) {
-      const cell = document.createElement("td");
       const text = column.text(row);
-      cell.textContent = text;
+      const cell = make("td", { className: column.title === "status" ? text : column.isNumber ? "number" : "" }, text);
       if (text.length > 12) cell.title = text;
-      if (column.isNumber) cell.className = "number";
-      if (column.title === "status") cell.className = text;
       line.append(cell);
     }
     return line;
@@ -194,8 +177,7 @@ export class TakeTable {
 }
 
 function space(height: number): HTMLElement {
-  const line = document.createElement("tr");
-  line.setAttribute("aria-hidden", "true");
+  const line = make("tr", { ariaHidden: "true" });
   line.style.height = `${height}px`;
   return line;
 }
