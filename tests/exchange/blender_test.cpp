@@ -1,4 +1,4 @@
-#include "pliant/exchange/blender.hpp"
+#include "pliant/exchange/formats.hpp"
 
 #include <cmath>
 #include <string>

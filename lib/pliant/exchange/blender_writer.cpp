@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "pliant/exchange/blender.hpp"
 #include "pliant/exchange/blender_words.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/exchange/held_channel.hpp"
 
 namespace pliant::exchange {

@@ -7,9 +7,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/exchange/blender.hpp"
-#include "pliant/exchange/gltf_animation.hpp"
-#include "pliant/exchange/maya.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/files/file_reference.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/scene/text/markup.hpp"

@@ -9,7 +9,7 @@
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/euler.hpp"
 #include "pliant/exchange/fit.hpp"
-#include "pliant/exchange/gltf_animation.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/exchange/rotation_track.hpp"
 #include "pliant/exchange/single.hpp"
 #include "pliant/files/gltf/gltf_accessor.hpp"

@@ -14,7 +14,7 @@
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/euler.hpp"
 #include "pliant/exchange/fit.hpp"
-#include "pliant/exchange/gltf_animation.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/exchange/held_channel.hpp"
 #include "pliant/exchange/rotation_track.hpp"
 #include "pliant/exchange/single.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -11,11 +12,67 @@
 #include "pliant/core/elementary.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/exchange/fit.hpp"
-#include "pliant/exchange/loss_log.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 
 namespace pliant::exchange {
 namespace {
+
+// Collects what became of the parts of a curve, one line for each kind of thing.
+class LossLog {
+ public:
+  // `thing`: "jump"; `result`: "became steps of 1/1024 frame". `keys`: that the thing became, 0:
+  // not told.
+  void add(const std::string& thing, const std::string& result, double frame, std::size_t keys,
+           double deviation, bool is_exact) {
+    Entry& entry = entries_[{thing, result}];
+    if (entry.count++ == 0) {
+      entry.frame = frame;
+      entry.order = entries_.size();
+    }
+    entry.keys += keys;
+    entry.deviation = std::max(entry.deviation, deviation);
+    entry.is_exact = entry.is_exact && is_exact;
+  }
+
+  // What happens beyond the keys: a line as it is.
+  void add_side(std::string message, bool is_exact) {
+    sides_.push_back({std::move(message), is_exact});
+  }
+
+  // First those beyond the keys, then all others in their order.
+  std::vector<Loss> take() const {
+    std::vector<std::pair<std::size_t, Loss>> ordered;
+    for (const auto& [what, entry] : entries_) {
+      std::string text =
+          entry.count == 1
+              ? fmt::format("the {} of key {} ", what.first, entry.frame)
+              : fmt::format("{} {}s, the first of key {}, ", entry.count, what.first, entry.frame);
+      text += entry.count > 1 && what.second.starts_with("was ") ? "were " + what.second.substr(4)
+                                                                 : what.second;
+      if (entry.keys > 0) text += fmt::format(" {} key{}", entry.keys, entry.keys == 1 ? "" : "s");
+      if (!entry.is_exact && entry.deviation > 0)
+        text += fmt::format(", within {:.2g}", entry.deviation);
+      ordered.push_back({entry.order, {std::move(text), entry.is_exact}});
+    }
+    std::sort(ordered.begin(), ordered.end(),
+              [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Loss> losses = sides_;
+    for (auto& [order, loss] : ordered) losses.push_back(std::move(loss));
+    return losses;
+  }
+
+ private:
+  struct Entry {
+    std::size_t count = 0;
+    std::size_t order = 0;
+    double frame = 0;
+    std::size_t keys = 0;
+    double deviation = 0;
+    bool is_exact = true;
+  };
+  std::map<std::pair<std::string, std::string>, Entry> entries_;
+  std::vector<Loss> sides_;
+};
 
 constexpr double largest_held_frame = 1e7;
 constexpr double largest_held_value = 1e30;

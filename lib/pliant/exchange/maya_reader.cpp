@@ -10,7 +10,7 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/exchange/curve_names.hpp"
-#include "pliant/exchange/maya.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/exchange/maya_units.hpp"
 #include "pliant/files/file_object.hpp"
 #include "pliant/timeline/tangents.hpp"

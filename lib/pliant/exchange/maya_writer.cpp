@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "pliant/exchange/curve_names.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/exchange/held_channel.hpp"
-#include "pliant/exchange/maya.hpp"
 #include "pliant/exchange/maya_units.hpp"
 
 namespace pliant::exchange {

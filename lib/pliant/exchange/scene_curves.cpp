@@ -11,7 +11,7 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/exchange/curve_names.hpp"
-#include "pliant/exchange/gltf_animation.hpp"
+#include "pliant/exchange/formats.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/format/description.hpp"
 #include "pliant/scene/format/nearest.hpp"
