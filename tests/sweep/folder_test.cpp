@@ -350,7 +350,7 @@ TEST_CASE("a damaged sweep.json is refused", "[sweep]") {
     CHECK_FALSE(SweepFolder::open(place.sweep()));
   }
   std::string other = text;
-  other.replace(other.find("\"engine\": \"") + 11, 4, "aaaa");
+  other.replace(other.find("\"engine\":\"") + 10, 4, "aaaa");
   place.folder().write("sweep/sweep.json", other);
   CHECK_THAT(complaint_of(SweepFolder::open(place.sweep())), contains_text("has engine"));
 }

@@ -120,7 +120,7 @@ TEST_CASE("takes come back from their parts", "[sweep][takes]") {
   for (std::size_t take = 0; take < takes.count(); ++take)
     CHECK(texts_of(again, take) == texts_of(takes, take));
   TakeParts broken = takes.parts();
-  broken.axes[0].texts.pop_back();
+  broken.axes[0].texts.push_back("1");
   CHECK_FALSE(Takes::of(broken));
   broken = takes.parts();
   broken.axes[0].paths[0] = 7;

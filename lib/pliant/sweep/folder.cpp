@@ -18,7 +18,6 @@
 #include "pliant/files/writer.hpp"
 #include "pliant/states/engine.hpp"
 #include "pliant/sweep/log.hpp"
-#include "pliant/sweep/own_folder.hpp"
 #include "pliant/sweep/sweep_file.hpp"
 
 namespace pliant {

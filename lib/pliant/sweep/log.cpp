@@ -22,7 +22,6 @@
 #include "pliant/core/stop_request.hpp"
 #include "pliant/files/json/json_reader.hpp"
 #include "pliant/files/line_reader.hpp"
-#include "pliant/sweep/own_folder.hpp"
 
 namespace pliant {
 namespace {
@@ -167,6 +166,21 @@ std::string to_line(const TakeOutcome& outcome) {
 bool read_line(std::string_view text, LogLine& line) {
   auto json = parse_json(text, "a line of a log");
   return json && json->is_object() && LineContent(*json).read(line);
+}
+
+Result<void> make_own_folder(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_symlink(folder, error))
+    return fail(
+        ErrorCode::InvalidInput,
+        "is a symbolic link, but a sweep writes only to its own folder; put a folder in its "
+        "place, or make the sweep where the link leads",
+        folder.string());
+  fs::create_directory(folder, error);
+  if (error)
+    return fail(ErrorCode::Unwritable, "cannot make the folder: " + error.message(),
+                folder.string());
+  return {};
 }
 
 LogFile::~LogFile() {

@@ -66,6 +66,10 @@ class LogFile {
   std::string name_;
 };
 
+/// Makes a folder within that of a sweep, if it is not there. Errors: InvalidInput: a link is in
+/// its place, which may lead anywhere if the sweep is a stranger's; Unwritable.
+Result<void> make_own_folder(const std::filesystem::path& folder);
+
 /// Reads a log while others write it.
 class LogReader {
  public:

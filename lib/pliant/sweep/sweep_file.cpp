@@ -111,25 +111,21 @@ FileJson texts_of_scenes(const SweepFile& content) {
 }
 
 void write_content(const SweepFile& content, const TakeParts& takes, JsonFile& out) {
-  out.text(fmt::format("{{\"sweep\": {},\n\"version\": ", format_version));
-  out.value(content.version);
-  out.text(",\n\"engine\": ");
-  out.value(content.engine);
-  out.text(",\n\"arguments\": ");
-  out.value(arguments_of(content));
-  out.text(",\n\"scenes\": ");
-  out.value(texts_of_scenes(content));
-  out.text(",\n\"files\": ");
-  FileJson files = FileJson::array();
+  FileJson json{{"sweep", format_version},
+                {"version", content.version},
+                {"engine", content.engine},
+                {"arguments", arguments_of(content)},
+                {"scenes", texts_of_scenes(content)},
+                {"files", FileJson::array()},
+                {"paths", FileJson::array()}};
   for (const InputHash& input : content.inputs)
-    files.push_back({{"file", input.file}, {"hash", to_text(input.hash)}});
-  out.value(files);
-  out.text(",\n\"paths\": ");
-  FileJson paths = FileJson::array();
+    json["files"].push_back({{"file", input.file}, {"hash", to_text(input.hash)}});
   for (const VariedPath& path : takes.paths)
-    paths.push_back({{"path", path.path}, {"kind", word_of(path.kind)}});
-  out.value(paths);
-  out.text(",\n\"axes\": [");
+    json["paths"].push_back({{"path", path.path}, {"kind", word_of(path.kind)}});
+  std::string head = json.dump();
+  head.back() = ',';  // the axes follow
+  out.text(head);
+  out.text("\n\"axes\": [");
   for (std::size_t k = 0; k < takes.axes.size(); ++k) {
     const TakeAxis& axis = takes.axes[k];
     out.text(k == 0 ? "\n{\"paths\": " : ",\n{\"paths\": ");

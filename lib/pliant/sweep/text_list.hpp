@@ -24,11 +24,6 @@ class TextList {
     ends_.push_back(bytes_.size());
   }
 
-  void pop_back() {
-    ends_.pop_back();
-    bytes_.resize(ends_.empty() ? 0 : ends_.back());
-  }
-
  private:
   std::vector<char> bytes_;
   std::vector<std::size_t> ends_;  // of each text in `bytes_`
