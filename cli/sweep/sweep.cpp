@@ -1,5 +1,7 @@
 #include "cli/sweep/sweep.hpp"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -58,6 +60,38 @@ void print_failures(const SweepFolder& folder, const SweepStatus& status, const 
   }
   if (count > most_named)
     print(stderr, fmt::format("{} failed too\n", counted(count - most_named, "other take")));
+}
+
+int run_sweep_status(const SweepStatusOptions& options) {
+  catch_interrupts();
+  const auto folder = open_sweep(options.folder, options.root);
+  if (!folder) return report(folder.error());
+  return tell_status(*folder);
+}
+
+int tell_status(const SweepFolder& folder, bool is_quiet, const SweepPart& part,
+                const std::optional<std::string>& part_text) {
+  const auto status = folder.status(&was_interrupted);
+  if (!status) return report(status.error());
+  Result<void> written;
+  if (!part_text) written = folder.write_table(*status, &was_interrupted);
+  std::size_t count = 0, done = 0, failed = 0;
+  for (std::size_t take = 0; take < status->takes.size(); ++take) {
+    if (!part.has(take)) continue;
+    ++count;
+    done += status->takes[take].status == TakeStatus::Done ? 1 : 0;
+    failed += status->takes[take].status == TakeStatus::Failed ? 1 : 0;
+  }
+  if (!is_quiet)
+    print(stdout,
+          fmt::format("{}: {}{}, {} done, {} failed, {} missing\n", printable(folder.folder()),
+                      part_text ? "part " + *part_text + ": " : "", counted(count, "take"), done,
+                      failed, count - done - failed));
+  print_failures(folder, *status, part);
+  if (!written) return report(written.error());
+  const bool has_conflict = std::ranges::any_of(
+      status->conflicts, [&](const HashConflict& conflict) { return part.has(conflict.take); });
+  return done == count && !has_conflict ? exit_done : exit_failed;
 }
 
 }  // namespace pliant::cli

@@ -96,9 +96,11 @@ int run_sweep_view(const SweepViewOptions& options);
 /// `SweepFolder::open`. Errors: also those of `folder_of`.
 Result<SweepFolder> open_sweep(const std::string& folder, const Root& root);
 
-/// Writes the table of a sweep, counts its takes on stdout unless it is quiet, and names failures
-/// on stderr. Returns the exit code: 0 if all takes are done.
-int tell_status(const SweepFolder& folder, bool is_quiet = false);
+/// Counts the takes of a sweep, or of a part, on stdout unless it is quiet, and names failures on
+/// stderr; writes the table unless it is a part, K/P as typed. Returns the exit code: 0 if all
+/// these takes are done.
+int tell_status(const SweepFolder& folder, bool is_quiet = false, const SweepPart& part = {},
+                const std::optional<std::string>& part_text = {});
 
 /// Whether a file is no part of a sweep, so that a command may write it. Errors: InvalidInput,
 /// naming the option.

@@ -117,27 +117,6 @@ int print_plan(const SweepRequest& request, const SweepRunOptions& options) {
   return written ? exit_done : report(written.error());
 }
 
-std::string summary_of(const SweepFolder& folder, const SweepStatus& status,
-                       const std::optional<std::string>& part) {
-  return fmt::format("{}: {}{}, {} done, {} failed, {} missing\n", printable(folder.folder()),
-                     part ? "part " + *part + ": " : "", counted(status.takes.size(), "take"),
-                     status.done, status.failed, status.missing());
-}
-
-// What is known of a part only.
-SweepStatus status_of_part(const SweepStatus& status, const SweepPart& part) {
-  SweepStatus of_part;
-  for (std::size_t take = 0; take < status.takes.size(); ++take) {
-    if (!part.has(take)) continue;
-    of_part.takes.push_back(status.takes[take]);
-    of_part.done += status.takes[take].status == TakeStatus::Done ? 1 : 0;
-    of_part.failed += status.takes[take].status == TakeStatus::Failed ? 1 : 0;
-  }
-  for (const HashConflict& conflict : status.conflicts)
-    if (part.has(conflict.take)) of_part.conflicts.push_back(conflict);
-  return of_part;
-}
-
 void tell_memory(std::size_t count, const SimulationOptions& resources) {
   const TakesAtOnce at_once = takes_at_once(count, resources.threads, resources.max_memory);
   print(stderr, fmt::format("{} at once, up to {} each\n", counted(at_once.count, "take"),
@@ -174,16 +153,7 @@ int run_takes(const SweepFolder& folder, const SweepRunOptions& options, const S
                             "those that are missing"));
   }
   if (!ran) return report(ran.error());
-  const auto all = folder.status(&was_interrupted);
-  if (!all) return report(all.error());
-  if (!options.part) {
-    if (auto written = folder.write_table(*all, &was_interrupted); !written)
-      return report(written.error());
-  }
-  const SweepStatus status = status_of_part(*all, part);
-  if (!options.is_quiet) print(stdout, summary_of(folder, status, options.part));
-  print_failures(folder, *all, part);
-  return status.is_complete() ? exit_done : exit_failed;
+  return tell_status(folder, options.is_quiet, part, options.part);
 }
 
 bool is_folder(const std::string& name) {

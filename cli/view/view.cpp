@@ -13,7 +13,6 @@
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/report.hpp"
-#include "cli/view/view_outputs.hpp"
 #include "cli/view/view_picture.hpp"
 #include "cli/view/view_scene.hpp"
 #include "pliant/core/text.hpp"

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "cli/commands/scene_input.hpp"
 #include "cli/terminal/command_line.hpp"
@@ -33,5 +34,13 @@ void add_view(CLI::App& app, ViewOptions& options);
 /// Makes a page that plays a scene, serves it, or makes a picture or movie of it. Returns the exit
 /// code.
 int run_view(const ViewOptions& options);
+
+/// Writes a movie of the frames: a headless browser draws them and ffmpeg encodes them. Returns the
+/// exit code.
+int movie_view(const ViewOptions& options, std::string_view page);
+
+/// Serves the page until Ctrl-C, and bakes again when the scene's file or one of its meshes is
+/// saved. Returns the exit code.
+int serve_view(const ViewOptions& options, std::string_view page);
 
 }  // namespace pliant::cli

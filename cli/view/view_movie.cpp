@@ -15,7 +15,7 @@
 #include "cli/terminal/progress.hpp"
 #include "cli/terminal/report.hpp"
 #include "cli/view/movie_writer.hpp"
-#include "cli/view/view_outputs.hpp"
+#include "cli/view/view.hpp"
 #include "cli/view/view_picture.hpp"
 #include "cli/view/view_scene.hpp"
 #include "pliant/core/memory_budget.hpp"

@@ -19,7 +19,7 @@
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/json.hpp"
 #include "cli/terminal/report.hpp"
-#include "cli/view/view_outputs.hpp"
+#include "cli/view/view.hpp"
 #include "cli/view/view_scene.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "viewer/server.hpp"
