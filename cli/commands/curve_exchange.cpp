@@ -308,9 +308,7 @@ Result<void> export_curves(const CurveExchangeOptions& options) {
   }
   const auto scene = read_scene(options.scene, options.root);
   if (!scene) return fail(scene.error());
-  if (const std::string input = input_named(options.out, *scene); !input.empty()) {
-    return bad_usage(fmt::format("-o {}: {}; choose another name", printable(options.out), input));
-  }
+  if (auto free = check_no_input("-o", options.out, *scene); !free) return free;
   const auto curves = curves_of(*scene, options.channels);
   if (!curves) return fail(curves.error());
   if (curves->empty()) return bad_usage("the scene has no animated channel, so there are no keys");

@@ -232,12 +232,9 @@ Result<void> write_plot(TextOutput& output, std::span<const NamedChannel> channe
 // Checks that the output is not one of the inputs.
 Result<void> check_place(const CurvesOptions& options, const Scene& scene) {
   if (options.out.empty()) return {};
-  std::string input = input_named(options.out, scene);
   if (!options.at.empty() && name_one_file(options.out, options.at))
-    input = "it is the file of --at";
-  if (input.empty()) return {};
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("-o {}: {}; choose another name", printable(options.out), input));
+    return refuse_output("-o", options.out, "it is the file of --at");
+  return check_no_input("-o", options.out, scene);
 }
 
 }  // namespace

@@ -19,18 +19,6 @@
 namespace pliant::cli {
 namespace {
 
-CLI::Validator integer_from(int least) {
-  constexpr int most = std::numeric_limits<int>::max();
-  const std::string range = fmt::format("from {} to {}", least, most);
-  return CLI::Validator(
-      [=](std::string& text) -> std::string {
-        const auto number = to_integer(text);
-        return number && *number >= least ? ""
-                                          : fmt::format("{}: must be an integer {}", text, range);
-      },
-      range);
-}
-
 // Runs `work` with its options and shows a progress bar.
 template <class Work>
 auto with_progress(const ReplayCommandOptions& options, const Work& work) {

@@ -198,8 +198,7 @@ tl::unexpected<Error> refuse_existing(const NewFile& file) {
 Result<void> check_place(const NewFile& file, const NewOptions& options) {
   if (auto place = check_output_file("-o", file.path.string()); !place) return place;
   if (options.mesh && name_one_file(file.path, *options.mesh))
-    return refuse(
-        fmt::format("-o {}: it is the mesh; choose another name", printable(file.path.string())));
+    return refuse_output("-o", file.path, "it is the mesh");
   std::error_code unknown;
   if (file.may_replace || !fs::exists(file.path, unknown)) return {};
   return refuse_existing(file);

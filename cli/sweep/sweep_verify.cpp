@@ -19,7 +19,7 @@ void add_sweep_verify(CLI::App& sweep, SweepVerifyOptions& options) {
       sweep.add_subcommand("verify", "Run takes that are done again, and compare their hashes");
   verify->add_option("DIR", options.folder, "Folder of a sweep")->required();
   verify->add_option("--every", options.every, "Only every K-th take")
-      ->check(CLI::Range(1, 1'000'000))
+      ->check(integer_from(1, 1'000'000))
       ->type_name("K")
       ->capture_default_str();
   add_root(*verify, options.root);

@@ -28,22 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-tl::unexpected<Error> refuse_output(std::string_view option, const std::string& file,
-                                    std::string_view reason) {
-  return fail(ErrorCode::InvalidInput,
-              fmt::format("{} {}: {}; choose another name", option, printable(file), reason));
-}
-
 // Whether a file may be written, ahead of all work: it is no part of the sweep and no input of it.
 Result<void> check_view_output(std::string_view option, const std::string& file,
                                const SweepFolder& folder) {
   if (auto no_part = check_no_part(option, file, folder); !no_part) return no_part;
   return folder.sweep().for_each_variant(
-      [&](const Scene& scene) -> Result<void> {
-        const std::string input = input_named(file, scene);
-        return input.empty() ? Result<void>() : refuse_output(option, file, input);
-      },
-      &was_interrupted);
+      [&](const Scene& scene) { return check_no_input(option, file, scene); }, &was_interrupted);
 }
 
 Result<void> check_view_places(const SweepViewOptions& options) {

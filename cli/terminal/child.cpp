@@ -18,8 +18,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "pliant/files/open_file.hpp"
-
 namespace pliant::cli {
 namespace {
 
@@ -50,18 +48,6 @@ std::vector<char*> environment_without(std::span<const std::string_view> dropped
   variables.push_back(nullptr);
   return variables;
 }
-
-struct Pipe {
-  OpenDescriptor reading, writing;
-
-  bool open() {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return false;
-    reading = OpenDescriptor(ends[0]);
-    writing = OpenDescriptor(ends[1]);
-    return true;
-  }
-};
 
 // Cuts bytes into lines.
 class Lines {
@@ -121,6 +107,14 @@ std::optional<std::string> program_on_path(std::string_view name) {
     folders.remove_prefix(std::min(end + 1, folders.size()));
   }
   return {};
+}
+
+bool Pipe::open() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) return false;
+  reading = OpenDescriptor(ends[0]);
+  writing = OpenDescriptor(ends[1]);
+  return true;
 }
 
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,

@@ -12,12 +12,20 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "pliant/files/open_file.hpp"
 
 namespace pliant::cli {
 
 /// The absolute path of a program on the PATH; null: there is none of that name.
 std::optional<std::string> program_on_path(std::string_view program);
 inline bool is_on_path(std::string_view program) { return program_on_path(program).has_value(); }
+
+/// The two ends of a pipe, which no program that is started gets by itself.
+struct Pipe {
+  OpenDescriptor reading, writing;
+
+  bool open();  ///< false, with errno: there can be none
+};
 
 /// The standard streams of a program that is started: open descriptors, or /dev/null.
 struct ChildStreams {

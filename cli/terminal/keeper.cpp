@@ -16,26 +16,24 @@
 namespace pliant::cli {
 
 Result<Keeper> Keeper::start(std::vector<std::string> words, const ChildStreams& streams) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0)
+  Pipe lifeline;
+  if (!lifeline.open())
     return fail(ErrorCode::Unwritable, fmt::format("cannot make a pipe: {}", std::strerror(errno)));
   words.insert(words.begin(), {"/proc/self/exe", std::string(keeper_request)});
   ChildStreams its = streams;
-  its.lifeline = ends[0];
+  its.lifeline = lifeline.reading.number();
   const auto process = start_child(std::move(words), its);
-  close(ends[0]);
-  if (process) return Keeper(*process, ends[1]);
-  close(ends[1]);
-  return fail(process.error());
+  if (!process) return fail(process.error());
+  return Keeper(*process, std::move(lifeline.writing));
 }
 
 Keeper::Keeper(Keeper&& other) noexcept
     : process_(std::exchange(other.process_, 0)),
-      lifeline_(std::exchange(other.lifeline_, -1)),
+      lifeline_(std::move(other.lifeline_)),
       code_(other.code_) {}
 
 void Keeper::end() {
-  if (lifeline_ >= 0) close(std::exchange(lifeline_, -1));
+  lifeline_ = OpenDescriptor();
   if (process_ != 0) kill(process_, SIGCONT);  // if somebody has stopped it
   reap(0);
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -31,11 +32,12 @@ class Keeper {
   void end();
 
  private:
-  Keeper(pid_t process, int lifeline) : process_(process), lifeline_(lifeline) {}
+  Keeper(pid_t process, OpenDescriptor lifeline)
+      : process_(process), lifeline_(std::move(lifeline)) {}
   void reap(int options);
 
-  pid_t process_;  // 0: it has ended
-  int lifeline_;   // a pipe, whose closing tells the keeper that this object or the command ended
+  pid_t process_;            // 0: it has ended
+  OpenDescriptor lifeline_;  // whose closing tells the keeper that this object or the command ended
   int code_ = 0;
 };
 

@@ -47,6 +47,18 @@ CLI::Validator number_from(double least) {
       range);
 }
 
+CLI::Validator integer_from(int least, int most) {
+  const std::string range = fmt::format("from {} to {}", least, most);
+  return CLI::Validator(
+      [=](std::string& text) -> std::string {
+        const auto number = to_integer(text);
+        return number && *number >= least && *number <= most
+                   ? ""
+                   : fmt::format("{}: must be an integer {}", text, range);
+      },
+      range);
+}
+
 CLI::Validator file_name() {
   return CLI::Validator(
       [](std::string& text) {
@@ -59,14 +71,7 @@ void add_threads(CLI::App& command, ResourceOptions& options) {
   command
       .add_option("--threads", options.threads,
                   "Number of threads; as many as the machine has by default")
-      ->check(CLI::Validator(
-          [](std::string& text) -> std::string {
-            const auto count = to_integer(text);
-            return count && *count >= 1 && *count <= 1024
-                       ? ""
-                       : text + ": must be an integer from 1 to 1024";
-          },
-          "from 1 to 1024"));
+      ->check(integer_from(1, 1024));
 }
 
 void add_memory(CLI::App& command, ResourceOptions& options) {

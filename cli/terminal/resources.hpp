@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <string>
 
 #include "cli/terminal/command_line.hpp"
@@ -16,6 +17,9 @@ struct ResourceOptions {
 
 /// For an option with a number from `least` to 10^9.
 CLI::Validator number_from(double least);
+
+/// For an option with an integer from `least` to `most`.
+CLI::Validator integer_from(int least, int most = std::numeric_limits<int>::max());
 
 /// Accepts a name that is not empty, as that of a variable which a script did not set is.
 CLI::Validator file_name();

@@ -135,12 +135,11 @@ Result<ScratchFolder> ScratchFolder::make() {
   std::error_code error;
   const std::string whole = fs::absolute(place, error).string();
   if (error) return cannot(std::strerror(error.value()));
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) return cannot(std::strerror(errno));
-  auto keeper = Keeper::start({whole}, {.output = ends[1]});
-  close(ends[1]);
-  const std::string path = read_all(ends[0]);
-  close(ends[0]);
+  Pipe answer;
+  if (!answer.open()) return cannot(std::strerror(errno));
+  auto keeper = Keeper::start({whole}, {.output = answer.writing.number()});
+  answer.writing = OpenDescriptor();  // otherwise it would never end
+  const std::string path = read_all(answer.reading.number());
   if (!keeper) return cannot(keeper.error().message);
   if (!path.empty()) return ScratchFolder(path, *std::move(keeper));
   keeper->end();

@@ -35,42 +35,23 @@ Result<Ffmpeg> Ffmpeg::start(const std::vector<std::string>& words, const Scratc
   std::vector<std::string> all = {program, "-hide_banner", "-nostdin", "-loglevel", "error", "-y"};
   all.insert(all.end(), words.begin(), words.end());
   const std::string log = folder.path() + "/log";
-  const int messages = open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  int ends[2];
-  if (messages < 0 || pipe2(ends, O_CLOEXEC) != 0) {
-    const int error = errno;
-    if (messages >= 0) close(messages);
-    return missing(std::strerror(error));
-  }
-  auto kept = KeptProgram::start(std::move(all), {.input = ends[0], .errors = messages}, folder);
-  close(messages);
-  close(ends[0]);
-  if (!kept) {
-    close(ends[1]);
-    return missing(kept.error().message);
-  }
-  fcntl(ends[1], F_SETFL, fcntl(ends[1], F_GETFL) | O_NONBLOCK);
-  return Ffmpeg(*std::move(kept), ends[1], log);
-}
-
-Ffmpeg::Ffmpeg(Ffmpeg&& other) noexcept
-    : program_(std::move(other.program_)),
-      input_(std::exchange(other.input_, -1)),
-      log_(std::move(other.log_)) {}
-
-Ffmpeg::~Ffmpeg() { close_input(); }
-
-void Ffmpeg::close_input() {
-  if (input_ >= 0) close(input_);
-  input_ = -1;
+  const OpenDescriptor messages(open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
+  Pipe pixels;
+  if (!messages.is_open() || !pixels.open()) return missing(std::strerror(errno));
+  auto kept = KeptProgram::start(
+      std::move(all), {.input = pixels.reading.number(), .errors = messages.number()}, folder);
+  if (!kept) return missing(kept.error().message);
+  const int input = pixels.writing.number();
+  fcntl(input, F_SETFL, fcntl(input, F_GETFL) | O_NONBLOCK);
+  return Ffmpeg(*std::move(kept), std::move(pixels.writing), log);
 }
 
 Result<void> Ffmpeg::write(std::string_view bytes) {
   while (!bytes.empty()) {
     if (was_interrupted()) return interrupted();
-    pollfd ready = {input_, POLLOUT, 0};
+    pollfd ready = {input_.number(), POLLOUT, 0};
     if (poll(&ready, 1, static_cast<int>(std::chrono::milliseconds(100).count())) <= 0) continue;
-    const ssize_t written = ::write(input_, bytes.data(), bytes.size());
+    const ssize_t written = ::write(input_.number(), bytes.data(), bytes.size());
     if (written > 0) {
       bytes.remove_prefix(static_cast<std::size_t>(written));
     } else if (errno != EAGAIN && errno != EINTR) {
@@ -81,7 +62,7 @@ Result<void> Ffmpeg::write(std::string_view bytes) {
 }
 
 Result<void> Ffmpeg::finish() {
-  close_input();
+  input_ = OpenDescriptor();
   for (;;) {
     if (const auto code = program_.code()) return *code == 0 ? Result<void>() : failure();
     if (was_interrupted()) return interrupted();

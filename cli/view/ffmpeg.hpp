@@ -17,10 +17,6 @@ class Ffmpeg {
   /// if there is no ffmpeg.
   static Result<Ffmpeg> start(const std::vector<std::string>& words, const ScratchFolder& folder);
 
-  Ffmpeg(Ffmpeg&& other) noexcept;
-  Ffmpeg& operator=(Ffmpeg&&) = delete;
-  ~Ffmpeg();
-
   /// Waits until it has read all bytes. Errors: Unwritable with ffmpeg's message if it ended;
   /// Interrupted.
   Result<void> write(std::string_view bytes);
@@ -28,14 +24,13 @@ class Ffmpeg {
   Result<void> finish();
 
  private:
-  Ffmpeg(KeptProgram program, int input, std::string log)
-      : program_(std::move(program)), input_(input), log_(std::move(log)) {}
+  Ffmpeg(KeptProgram program, OpenDescriptor input, std::string log)
+      : program_(std::move(program)), input_(std::move(input)), log_(std::move(log)) {}
 
-  void close_input();
   tl::unexpected<Error> failure() const;
 
   KeptProgram program_;  // its incomplete output is useless
-  int input_;            // -1: closed
+  OpenDescriptor input_;
   std::string log_;
 };
 

@@ -52,10 +52,7 @@ int page_view(const ViewOptions& options, std::string_view page) {
   const std::string out = page_file(options);
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return report(scene.error());
-  if (const auto input = input_named(out, *scene); !input.empty()) {
-    return report({ErrorCode::InvalidInput,
-                   fmt::format("-o {}: {}; choose another name", printable(out), input)});
-  }
+  if (auto free = check_no_input("-o", out, *scene); !free) return report(free.error());
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return report(with_kept(baked.error(), "no page was written"));
   const auto made =

@@ -41,10 +41,8 @@ Result<void> check_programs() {
 
 Result<Plan> make_plan(const ViewOptions& options, const Scene& scene) {
   const std::string name = printable(*options.movie);
-  if (const auto input = input_named(*options.movie, scene); !input.empty()) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--movie {}: {}; choose another name", name, input));
-  }
+  if (auto free = check_no_input("--movie", *options.movie, scene); !free)
+    return fail(free.error());
   const auto format = movie_format(*options.movie);
   if (!format) return fail(format.error());
   const auto size = parse_size(options.size);

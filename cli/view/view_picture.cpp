@@ -104,10 +104,7 @@ Result<void> make_picture(const ViewOptions& options, std::string_view page) {
   if (auto look = check_look(options.look); !look) return look;
   auto scene = read_scene(options.scene, options.root, options.changes);
   if (!scene) return fail(scene.error());
-  if (const auto input = input_named(*options.png, *scene); !input.empty()) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("--png {}: {}; choose another name", printable(*options.png), input));
-  }
+  if (auto free = check_no_input("--png", *options.png, *scene); !free) return free;
   // The options are checked before the scene is run.
   const auto range = parse_frames(options.frames, *scene);
   if (!range) return fail(range.error());
