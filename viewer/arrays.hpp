@@ -4,10 +4,13 @@
 #include <cstring>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "pliant/core/byte_order.hpp"
+#include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "viewer/json.hpp"
 
 namespace pliant::viewer {
@@ -46,5 +49,8 @@ inline std::string joined(const Json& head, const std::string& arrays) {
   append_number(bytes, static_cast<std::uint32_t>(text.size()));
   return bytes + text + arrays;
 }
+
+/// A raw deflate stream (RFC 1951) of the bytes. Errors: OutOfMemory; Interrupted.
+Result<std::string> deflated(std::string_view bytes, const StopRequest& should_stop = {});
 
 }  // namespace pliant::viewer

@@ -11,7 +11,6 @@
 
 #include "pliant/core/stoppable_sort.hpp"
 #include "viewer/arrays.hpp"
-#include "viewer/bytes.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/forces.hpp"
 #include "viewer/json.hpp"

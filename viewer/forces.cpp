@@ -8,10 +8,29 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/force_values.hpp"
+#include "pliant/scene/format/description.hpp"
 
 namespace pliant::viewer {
 namespace {
+
+struct AddValues {
+  const std::function<void(std::string_view, const ValueAt&)>& add;
+
+  void operator()(const Attribute& attribute, const Channel<1>& channel) const {
+    add(attribute.name, [&](int frame) { return Json(channel.at(frame)[0]); });
+  }
+  void operator()(const Attribute& attribute, const Channel<3>& channel) const {
+    add(attribute.name, [&](int frame) { return Json(channel.at(frame)); });
+  }
+  void operator()(const Attribute& attribute, const PositionChannel& position) const {
+    add(attribute.name, [&](int frame) { return Json(position.at(frame)); });
+  }
+  void operator()(const Attribute& attribute, const std::optional<Channel<3>>& channel) const {
+    if (channel) (*this)(attribute, *channel);
+  }
+  template <class Other>
+  void operator()(const Attribute&, const Other&) const {}  // not a channel
+};
 
 // The value at each frame, or a single value if all are equal.
 Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
@@ -89,6 +108,11 @@ Json group_json(const Named& named, const Group& group, const FrameRange& frames
 Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 
 }  // namespace
+
+void for_each_value(const Force& force,
+                    const std::function<void(std::string_view, const ValueAt&)>& add) {
+  std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
+}
 
 Result<Json> view_forces(const Scene& scene, const FrameRange& frames,
                          const StopRequest& should_stop) {

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -16,6 +18,14 @@
 #include "viewer/lines.hpp"
 
 namespace pliant::viewer {
+
+/// The value of a channel at a frame: a number, or [x, y, z].
+using ValueAt = std::function<Json(int frame)>;
+
+/// Calls `add` for each channel of a force's kind, such as `center`: the name of its attribute and
+/// its values. A position on a path is a position.
+void for_each_value(const Force& force,
+                    const std::function<void(std::string_view, const ValueAt&)>& add);
 
 /// The forces and groups of a scene as a page draws them: their places and radii at each frame,
 /// from their channels. Thesis 5.2.2.

@@ -3,7 +3,6 @@
 #include <span>
 
 #include "pliant/core/base64.hpp"
-#include "viewer/bytes.hpp"
 
 namespace pliant::viewer {
 

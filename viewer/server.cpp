@@ -13,7 +13,6 @@
 #include "viewer/gate.hpp"
 #include "viewer/http_server.hpp"
 #include "viewer/page.hpp"
-#include "viewer/secret_token.hpp"
 
 namespace pliant::viewer {
 namespace {

@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "pliant/core/result.hpp"
-#include "viewer/bytes.hpp"
 #include "viewer/sweep_table.hpp"
 #include "viewer/take_shapes.hpp"
 

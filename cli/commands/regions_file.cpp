@@ -9,7 +9,7 @@
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/json.hpp"
 #include "pliant/forces/force.hpp"
-#include "viewer/force_values.hpp"
+#include "viewer/forces.hpp"
 
 namespace pliant::cli {
 namespace {

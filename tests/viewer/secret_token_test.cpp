@@ -1,11 +1,10 @@
-#include "viewer/secret_token.hpp"
-
 #include <algorithm>
 #include <chrono>
 #include <set>
 #include <string>
 
 #include "support/catch.hpp"
+#include "viewer/gate.hpp"
 
 using namespace pliant::viewer;
 

@@ -1,4 +1,4 @@
-#include "viewer/bytes.hpp"
+#include "viewer/arrays.hpp"
 
 #include <random>
 #include <vector>
