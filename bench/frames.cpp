@@ -100,29 +100,9 @@ double triad(int side) {
   });
 }
 
-class Folder {
- public:
-  Folder() {
-    std::string name = std::filesystem::exists("/dev/shm")
-                           ? "/dev/shm/pliant-frames-XXXXXX"
-                           : (std::filesystem::temp_directory_path() / "pliant-frames-XXXXXX");
-    path_ = mkdtemp(name.data());
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  std::filesystem::path file(const std::string& name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
-
 // Writes a frame into a file of each format. Twice, since the first write allocates the buffers.
-void time_writers(const Folder& folder, const Simulation& simulation, const SurfacePose& pose,
-                  Times& times) {
+void time_writers(const ScratchFolder& folder, const Simulation& simulation,
+                  const SurfacePose& pose, Times& times) {
   const Mesh& mesh = simulation.rest_shapes()[0].mesh;
   for (std::size_t k = 0; k < endings.size(); ++k) {
     const auto writer = make_writer({.file = folder.file("a." + endings[k]),
@@ -143,7 +123,8 @@ Times measure(int side, const Options& options) {
       Simulation::make(make_scene(side),
                        {.checkpoint_bytes = 0, .threads = options.threads, .profile = true})
           .value();
-  const Folder folder;
+  const ScratchFolder folder(
+      std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path());
   Times times;
   Frame frame = simulation.at(2).value();  // allocates and sets up everything
   SurfacePose pose;

@@ -1,17 +1,23 @@
 #pragma once
 
-// Shared by the benchmarks: a clock, medians, and options.
+// Shared by the benchmarks: clocks, medians, a folder, and options.
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
 #include <initializer_list>
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <variant>
 #include <vector>
+
+#include "pliant/core/result.hpp"
 
 /// The duration of some work. [s]
 template <class Work>
@@ -27,6 +33,37 @@ inline double typical(std::vector<double> times, bool is_least) {
   std::nth_element(times.begin(), middle, times.end());
   return *middle;
 }
+
+/// A folder that is removed at the end.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(const std::filesystem::path& parent) {
+    std::string name = parent / "pliant-bench-XXXXXX";
+    path_ = mkdtemp(name.data());
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string file(std::string_view name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The value, or the end of the program with the errors on stderr.
+template <class T>
+T value_or_abort(pliant::Result<T> result) {
+  if (result) return *std::move(result);
+  for (const std::string& line : pliant::to_lines(result.error()))
+    std::fprintf(stderr, "%s\n", line.c_str());
+  std::abort();
+}
+
+/// Seconds of all processors since the program began.
+inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// Whether the whole text is a number of at least 0.
 template <class Number>

@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -84,9 +83,9 @@ Outcome run(const Options& options, const Grid& grid, double yield) {
     problem.load = frame / 24.0 * push;
     const PlasticField before = state.plastic;
     const auto solves = solver->counts().solves;
-    const std::clock_t begin = std::clock();
+    const double begin = processor_seconds();
     state = solver->advance(problem, steps, std::move(state)).value();
-    const double time = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    const double time = processor_seconds() - begin;
     if (frame <= first_measured) continue;
     outcome.times.push_back(time);
     outcome.solves += static_cast<double>(solver->counts().solves - solves);

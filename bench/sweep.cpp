@@ -45,29 +45,10 @@ struct Options {
   int million = 1'000'000;
 };
 
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
 double most_memory() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1000;
-}
-
-// A folder that is removed at the end.
-struct Scratch {
-  fs::path path = fs::temp_directory_path() / fmt::format("pliant-bench-{}", getpid());
-  Scratch() { fs::create_directories(path); }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  ~Scratch() { fs::remove_all(path); }
-  std::string file(std::string_view name) const { return (path / name).string(); }
-};
-
-template <class T>
-T value_or_abort(Result<T> result) {
-  if (result) return *std::move(result);
-  for (const std::string& line : to_lines(result.error())) fmt::print(stderr, "{}\n", line);
-  std::abort();
 }
 
 // Plays every take of a sweep, and nothing else.
@@ -90,7 +71,7 @@ double play_all(const Sweep& sweep) {
   return processor_seconds() - begin;
 }
 
-void measure_takes(const Options& options, const Scratch& scratch) {
+void measure_takes(const Options& options, const ScratchFolder& scratch) {
   const SweepRequest request{
       .scenes = {options.scene},
       .variation = {.vary = {options.vary.empty()
@@ -109,7 +90,7 @@ void measure_takes(const Options& options, const Scratch& scratch) {
       processor, alone, processor / alone);
 }
 
-void measure_million(const Options& options, const Scratch& scratch) {
+void measure_million(const Options& options, const ScratchFolder& scratch) {
   const SweepRequest request{.scenes = {options.scene},
                              .variation = {.vary = {"sheet.density=1:50", "sheet.damping=1:100"},
                                            .samples = static_cast<std::size_t>(options.million)}};
@@ -153,7 +134,7 @@ int main(int count, char* arguments[]) {
                      {"--million", &options.million}},
                     "sweep [--scene SCENE] [--takes N] [--vary PATH=VALUES] [--million N]"))
     return 2;
-  const Scratch scratch;
+  const ScratchFolder scratch(fs::temp_directory_path());
   if (options.million > 0) measure_million(options, scratch);
   if (options.takes > 0) measure_takes(options, scratch);
 }

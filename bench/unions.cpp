@@ -16,13 +16,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "measuring.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_factories.hpp"
@@ -34,23 +34,15 @@ using namespace pliant;
 
 constexpr int steps = 20;
 
-template <class T>
-T check(Result<T> result) {
-  if (result) return *std::move(result);
-  fmt::print(stderr, "unions: {}\n", result.error().message);
-  std::exit(1);
-}
-
 template <class F>
 double median_ms(int repetitions, const F& f) {
   std::vector<double> times;
   for (int k = 0; k < repetitions; ++k) {
-    const std::clock_t begin = std::clock();
+    const double begin = processor_seconds();
     f();
-    times.push_back(1000.0 * static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+    times.push_back(1e3 * (processor_seconds() - begin));
   }
-  std::sort(times.begin(), times.end());
-  return times[times.size() / 2];
+  return typical(std::move(times), false);
 }
 
 // A load that decreases with the distance from a point, on one patch of boxes.
@@ -84,7 +76,9 @@ Times measure(PlateProblem problem, int repetitions, const Make& make) {
     return false;
   }};
   std::unique_ptr<PlateSolver> solver;
-  const auto advance = [&] { state = check(solver->advance(problem, frame, std::move(state))); };
+  const auto advance = [&] {
+    state = value_or_abort(solver->advance(problem, frame, std::move(state)));
+  };
   Times times{};
   times.first = median_ms(repetitions, [&] {
     solver.reset();
