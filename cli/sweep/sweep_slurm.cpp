@@ -1,8 +1,10 @@
 #include "cli/sweep/sweep_slurm.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -13,15 +15,16 @@
 #include "cli/sweep/slurm_script.hpp"
 #include "cli/sweep/sweep.hpp"
 #include "cli/sweep/sweep_memory.hpp"
-#include "cli/sweep/sweep_wait.hpp"
 #include "cli/terminal/child.hpp"
 #include "cli/terminal/interrupt.hpp"
+#include "cli/terminal/progress.hpp"
 #include "cli/terminal/report.hpp"
 #include "cli/terminal/shell_word.hpp"
 #include "cli/terminal/usage.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/atomic_file.hpp"
 #include "pliant/files/read_file.hpp"
+#include "pliant/sweep/watch.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -135,6 +138,46 @@ void see_anew(const fs::path& folder) {
   if (fs::is_directory(fs::symlink_status(folder, ignored)))
     (void)AtomicFile::create(folder / "seen");
 }
+
+// Shows on a terminal how far the takes of a job are while it is waited for.
+class WaitingBar {
+ public:
+  // For the takes that are true, `count` of them, of the sweep in a folder. Begins before a job
+  // runs.
+  WaitingBar(const std::string& folder, std::vector<bool> takes, std::size_t count, bool is_quiet)
+      : progress_(static_cast<int>(count), is_quiet, "takes") {
+    if (count == 0 || !progress_.is_shown()) return;
+    if (auto watch = SweepWatch::begin(folder, std::move(takes), &was_interrupted))
+      watch_.emplace(*std::move(watch));
+  }
+
+  // To be called often: looks at the log now and then. `is_running`: the job has begun.
+  void look(bool is_running) {
+    constexpr int share = 20;  // of the time, spent looking
+    const auto begin = Clock::now();
+    if (!watch_ || begin < next_) return;
+    // What cannot be read now may be at the next look.
+    (void)watch_->look(&was_interrupted);
+    if ((is_running || watch_->ended() > 0) && !has_begun_) {
+      has_begun_ = true;
+      progress_.begin_again();
+    }
+    const std::size_t failed = watch_->failed();
+    progress_.add_note(!has_begun_ ? ", queued"
+                                   : (failed > 0 ? fmt::format(", {} failed", failed) : ""));
+    progress_.reach(static_cast<int>(watch_->ended()));
+    const auto end = Clock::now();
+    next_ = end + std::max<Clock::duration>(1s, share * (end - begin));
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::optional<SweepWatch> watch_;  // null: nothing is shown
+  Progress progress_;
+  bool has_begun_ = false;
+  Clock::time_point next_ = {};
+};
 
 // One sweep on its way to Slurm.
 class Submission {
