@@ -1,9 +1,8 @@
-#include "pliant/exchange/formats.hpp"
-
 #include <cmath>
 #include <string>
 
 #include "exchange/round_trips.hpp"
+#include "pliant/exchange/formats.hpp"
 
 namespace pliant {
 namespace {

@@ -1,9 +1,8 @@
-#include "pliant/exchange/euler.hpp"
 
 #include <cmath>
 #include <random>
 
-#include "pliant/exchange/rotation_track.hpp"
+#include "pliant/exchange/rotations.hpp"
 #include "support/catch.hpp"
 
 namespace pliant::exchange {

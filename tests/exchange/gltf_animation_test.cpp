@@ -3,8 +3,7 @@
 
 #include "exchange/round_trips.hpp"
 #include "pliant/core/base64.hpp"
-#include "pliant/exchange/euler.hpp"
-#include "pliant/exchange/rotation_track.hpp"
+#include "pliant/exchange/rotations.hpp"
 #include "pliant/files/raw_bytes.hpp"
 
 namespace pliant {

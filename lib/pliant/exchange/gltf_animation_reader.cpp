@@ -7,10 +7,9 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/exchange/curve_names.hpp"
-#include "pliant/exchange/euler.hpp"
 #include "pliant/exchange/fit.hpp"
 #include "pliant/exchange/formats.hpp"
-#include "pliant/exchange/rotation_track.hpp"
+#include "pliant/exchange/rotations.hpp"
 #include "pliant/exchange/single.hpp"
 #include "pliant/files/gltf/gltf_accessor.hpp"
 #include "pliant/files/gltf/gltf_buffers.hpp"

@@ -1,12 +1,10 @@
-#include "pliant/exchange/euler.hpp"
+#include "pliant/exchange/rotations.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include <Eigen/Geometry>
-
-#include "pliant/exchange/rotation_track.hpp"
 
 namespace pliant::exchange {
 namespace {
