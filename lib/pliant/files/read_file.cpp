@@ -7,6 +7,7 @@
 
 #include <unistd.h>
 
+#include "pliant/core/hash_stream.hpp"
 #include "pliant/files/open_file.hpp"
 
 namespace pliant {
@@ -93,6 +94,19 @@ Result<std::string> read_file(const std::filesystem::path& file, std::size_t max
 Result<std::string> read_file(const OpenFile& file, std::size_t max_bytes,
                               const StopRequest& should_stop) {
   return read_all(file, file.name(), file.size(), max_bytes, should_stop);
+}
+
+Result<Hash> hash_of_file(const OpenFile& file, const StopRequest& should_stop) {
+  HashStream stream;
+  bool is_stopped = pliant::is_stopped(should_stop);
+  const auto read = read_pieces(file, [&](std::string_view piece) {
+    stream.add(piece);
+    is_stopped = is_stopped || pliant::is_stopped(should_stop);
+    return !is_stopped;
+  });
+  if (is_stopped) return interrupted();
+  if (!read) return fail(read.error());
+  return stream.hash();
 }
 
 }  // namespace pliant

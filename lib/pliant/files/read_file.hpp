@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 
@@ -28,6 +29,10 @@ Result<std::string> read_file(const OpenFile& file, std::size_t max_bytes = std:
 Result<void> read_pieces(const std::filesystem::path& file,
                          const std::function<bool(std::string_view)>& take);
 Result<void> read_pieces(const OpenFile& file, const std::function<bool(std::string_view)>& take);
+
+/// The hash of an open file's bytes, in little memory. Errors: as `read_file`, for a file of any
+/// size.
+Result<Hash> hash_of_file(const OpenFile& file, const StopRequest& should_stop = {});
 
 /// Whether a file exists, is not a folder and may be read; does not open it. Errors: as
 /// `read_file`.

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/hash_stream.hpp"
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/output_place.hpp"
 #include "pliant/files/read_file.hpp"
@@ -82,16 +81,9 @@ Result<ReplayHeader> header_of(const Scene& scene, const WrittenScene& written,
     if (input.file == scene.origin.file) continue;  // the scene is stored as text
     const auto opened = OpenFile::open(input.file, input.root);
     if (!opened) continue;
-    // In pieces: a cache may be larger than the memory.
-    HashStream stream;
-    bool is_stopped = pliant::is_stopped(should_stop);
-    const auto read = read_pieces(*opened, [&](std::string_view piece) {
-      stream.add(piece);
-      is_stopped = is_stopped || pliant::is_stopped(should_stop);
-      return !is_stopped;
-    });
-    if (is_stopped) return interrupted();
-    if (read) header.files.push_back({name_of(input, written), stream.hash()});
+    const auto hash = hash_of_file(*opened, should_stop);
+    if (!hash && hash.error().code == ErrorCode::Interrupted) return fail(hash.error());
+    if (hash) header.files.push_back({name_of(input, written), *hash});
   }
   header.solver = name_of(solver);
   header.factors = name_of(available_solvers().front());

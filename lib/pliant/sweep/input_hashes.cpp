@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/hash_stream.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/read_file.hpp"
@@ -16,19 +15,6 @@
 
 namespace pliant {
 namespace {
-
-Result<Hash> hash_of_file(const OpenFile& file, const StopRequest& should_stop) {
-  HashStream stream;
-  bool is_stopped = false;
-  const auto read = read_pieces(file, [&](std::string_view piece) {
-    stream.add(piece);
-    is_stopped = pliant::is_stopped(should_stop);
-    return !is_stopped;
-  });
-  if (!read) return fail(read.error());
-  if (is_stopped) return interrupted();
-  return stream.hash();
-}
 
 // All that decides which files a scene leads to, beside its own text.
 std::vector<std::string> names_in(const Scene& scene) {

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
 #include "pliant/core/byte_order.hpp"
-#include "pliant/core/hash_stream.hpp"
 #include "pliant/core/text.hpp"
+#include "pliant/files/open_file.hpp"
 #include "pliant/files/read_file.hpp"
 
 namespace pliant {
@@ -134,14 +133,9 @@ namespace {
 
 // Whether a file has the hash in its name: files of other programs are never removed.
 bool is_of_its_name(const fs::path& gltf, const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  HashStream hash;
-  std::vector<char> piece(std::size_t{1} << 20);
-  while (in) {
-    in.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    hash.add({piece.data(), static_cast<std::size_t>(in.gcount())});
-  }
-  return in.eof() && numbers_file(gltf, hash.hash()).filename() == file.filename();
+  const auto opened = OpenFile::open(file);
+  const auto hash = opened ? hash_of_file(*opened) : fail(opened.error());
+  return hash && numbers_file(gltf, *hash).filename() == file.filename();
 }
 
 }  // namespace
