@@ -4,11 +4,14 @@
 #include "pliant/scene/text/expand.hpp"
 
 #include <map>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "fuzz.hpp"
 #include "pliant/scene/elements/scene_file.hpp"
 #include "pliant/scene/text/arithmetic.hpp"
+#include "support/tree_check.hpp"
 
 using namespace pliant;
 using namespace pliant::fuzzing;
@@ -44,25 +47,45 @@ TextFiles in_memory(const Files& files) {
           }};
 }
 
-/// Each element and attribute is on the line of the file that the map says.
-void check_lines(const Expansion& expansion, const Markup& markup, const Files& files) {
-  std::map<std::string, std::vector<std::string_view>> lines;
-  for (const auto& [name, text] : files) lines[name] = parts_between(text, "\n");
-  LineCounter counter(expansion.text);
-  const auto check = [&](std::uint32_t offset, std::string_view name) {
-    const ScenePlace place = expansion.files.place_of(counter.line_of(offset));
-    const auto& own = lines.at(fs::path(place.file).lexically_normal().string());
-    require(place.line >= 1 && static_cast<std::size_t>(place.line) <= own.size());
-    require(own[static_cast<std::size_t>(place.line) - 1].find(name) != std::string_view::npos);
-    require(place.chain.empty() == (place.file == "a.xml"));
-  };
-  for (std::size_t k = 0; k < markup.elements.size(); ++k) {
-    const std::string_view name = markup.elements[k].name.of(expansion.text);
-    require(name != "define" && (name != "include" || !expansion.is_sound));
-    check(markup.elements[k].name.begin, name);
-    for (const AttributePlace& attribute : markup.attributes_of(k))
-      check(attribute.name.begin, attribute.name.of(expansion.text));
+/// Each element and attribute is at a place of its file, where its name stands.
+class TreeCheck {
+ public:
+  TreeCheck(const Expansion& expansion, const SourceMap& sources)
+      : expansion_(expansion), sources_(sources) {}
+
+  void check(const Element& element) const {
+    require(element.name() != "define");
+    require(element.name() != "include" || !expansion_.is_sound);
+    check(element.place(), element.name());
+    for (const GivenAttribute& given : element.attributes()) {
+      require(!given.is_unknown || !expansion_.is_sound);
+      check(given.name_place(), given.name);
+    }
+    std::optional<Element> last;
+    for (auto child = element.first_child(); child; child = child->next()) {
+      require(child->parent().place() == element.place());
+      require(!last || sources_.is_before(last->place(), child->place()));
+      check(*child);
+      last = child;
+    }
   }
+
+ private:
+  void check(const TextPlace& place, std::string_view name) const {
+    require(place.range.of(sources_.text(place.text)) == name);
+    const ScenePlace told = sources_.place_of(place);
+    require(told.line >= 1 && told.end_line >= told.line);
+    require(told.chain.empty() == (told.file == "a.xml"));
+  }
+
+  const Expansion& expansion_;
+  const SourceMap& sources_;
+};
+
+/// What we make of a text is what tinyxml2 makes of it.
+void compare(const std::string& text) {
+  Findings findings("a.xml", SourceText::of(text));
+  if (scan_markup(findings)) require(pliant::testing::PlaceCheck(text).find().empty());
 }
 
 }  // namespace
@@ -73,22 +96,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     for (const double number : **numbers) require(number - number == 0);  // finite
 
   const Files files = files_of(input);
+  for (const auto& [name, text] : files) compare(text);
   const std::string& text = files.at("a.xml");
-  Findings findings("a.xml");
+  const auto sources = std::make_shared<SourceMap>("a.xml", SourceText::of(text));
+  Findings findings(sources);
   const auto fails = [&] { check_error(findings.to_error(), std::size_t{20'000}); };
-  const auto markup = scan_markup(text, findings);
+  const auto markup = scan_markup(findings);
   if (!markup) return fails(), 0;
-  const SourceText scene{text, *markup, "a.xml", ""};
-  const bool is_needed = needs_expansion(scene, findings);
-  const auto expansion = expand(scene, in_memory(files), findings);
+  const auto expansion = expand(*markup, "", in_memory(files), *sources, findings);
   if (!expansion) return fails(), 0;
   require((findings.problem_count() == 0) == expansion->is_sound);
-  for (const std::size_t at : expansion->unknown) require(expansion->text[at] == '?');
-  if (!is_needed) require(expansion->text == text);
-  findings.use(expansion->files);
-  const auto expanded = scan_markup(expansion->text, findings);
-  if (!expanded) return fails(), 0;
-  check_lines(*expansion, *expanded, files);
+  TreeCheck(*expansion, *sources).check(expansion->tree.root());
   const auto read = parse_scene_of(text, "a.xml", "", "", in_memory(files));
   if (!read) check_error(read.error(), 20'000);
   require(!read || expansion->is_sound);

@@ -187,10 +187,10 @@ Json messages_of(const Simulation& simulation) {
     messages.push_back(std::move(message));
   };
   for (const SceneNote& note : scene.notes) {
-    add("note", {note.file, note.line}, note.message);
+    add("note", {note, note.file}, note.message);
   }
   for (const Warning& warning : simulation.warnings()) {
-    const ScenePlace place = scene.origin.place_at(line_of(warning, scene.origin));
+    const ScenePlace place = scene.origin.place_of(place_of(warning, scene.origin));
     add("warning", place, place.told(warning.message()));
   }
   return messages;

@@ -7,7 +7,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/commands/problem_places.hpp"
 #include "cli/commands/scene_input.hpp"
 #include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
@@ -22,7 +21,6 @@ namespace {
 struct Findings {
   Json scenes = Json::array();
   Json problems = Json::array();
-  ProblemPlaces places;
 };
 
 std::string_view kind_of(ErrorCode code) {
@@ -43,17 +41,14 @@ std::string_view kind_of(ErrorCode code) {
   return "failed";
 }
 
-void add_problem(Findings& findings, const std::string& file, int line, std::string_view kind,
-                 const std::string& message) {
-  const auto place = findings.places.find(file, line, message);
-  const auto of_place = [&](int ProblemPlace::*member) {
-    return place ? Json((*place).*member) : Json(nullptr);
-  };
+void add_problem(Findings& findings, const std::string& file, const TextSpan& span,
+                 std::string_view kind, const std::string& message) {
+  const auto known = [](int number) { return number > 0 ? Json(number) : Json(nullptr); };
   findings.problems.push_back({{"file", file},
-                               {"line", line > 0 ? Json(line) : Json(nullptr)},
-                               {"column", of_place(&ProblemPlace::column)},
-                               {"endLine", of_place(&ProblemPlace::end_line)},
-                               {"endColumn", of_place(&ProblemPlace::end_column)},
+                               {"line", known(span.line)},
+                               {"column", known(span.column)},
+                               {"endLine", known(span.end_line)},
+                               {"endColumn", known(span.end_column)},
                                {"kind", kind},
                                {"severity", kind == "note" ? "information" : "error"},
                                {"message", message}});
@@ -65,7 +60,7 @@ int tell(const Error& error, const std::string& file, Findings* findings) {
   std::vector<Error> all = error.others;
   all.insert(all.begin(), error);
   for (const Error& one : all) {
-    add_problem(*findings, one.file.empty() ? file : one.file, one.line, kind_of(one.code),
+    add_problem(*findings, one.file.empty() ? file : one.file, one.span(), kind_of(one.code),
                 one.message);
   }
   return exit_code(error);
@@ -80,7 +75,7 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
   if (!findings) print_notes(scene->notes);
   if (findings) {
     for (const SceneNote& note : scene->notes) {
-      add_problem(*findings, note.file, note.line, "note", note.message);
+      add_problem(*findings, note.file, note, "note", note.message);
     }
   }
   if (!checked) return tell(checked.error(), file, findings);
@@ -107,7 +102,7 @@ void add_validate(CLI::App& app, ValidateOptions& options) {
 int run_validate(const ValidateOptions& options) {
   catch_interrupts();
   int worst = exit_done;
-  Findings findings{.places = ProblemPlaces(options.scenes, options.root.value_or(""))};
+  Findings findings;
   for (const std::string& file : options.scenes) {
     const int code = validate(file, options, options.is_json ? &findings : nullptr);
     worst = std::max(worst, code);

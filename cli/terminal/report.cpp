@@ -60,7 +60,7 @@ void print_warning(const ScenePlace& place, const std::string& message) {
 void print_warnings(const Simulation& simulation) {
   const SceneOrigin& origin = simulation.scene().origin;
   for (const Warning& warning : simulation.warnings()) {
-    print_warning(origin.place_at(line_of(warning, origin)), warning.message());
+    print_warning(origin.place_of(place_of(warning, origin)), warning.message());
   }
 }
 

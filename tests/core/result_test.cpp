@@ -5,7 +5,7 @@
 using namespace pliant;
 
 TEST_CASE("an error and those found with it take one line each", "[core][result]") {
-  Error error{ErrorCode::InvalidInput, "first", "scene.xml", 14, {}};
+  Error error = fail(ErrorCode::InvalidInput, "first", "scene.xml", 14).value();
   error.others.push_back({ErrorCode::InvalidInput, "second", "scene.xml", 0, {}});
   error.others.push_back({ErrorCode::InvalidInput, "third", "", 7, {}});
   CHECK(to_lines(error) == std::vector<std::string>{"scene.xml:14: error: first",
@@ -13,7 +13,7 @@ TEST_CASE("an error and those found with it take one line each", "[core][result]
 }
 
 TEST_CASE("what a file wrote does not break a line", "[core][result]") {
-  const Error error{ErrorCode::InvalidInput, "no \x1b[31m\xc3\xa4", "a\nb.obj", 2, {}};
+  const Error error = fail(ErrorCode::InvalidInput, "no \x1b[31m\xc3\xa4", "a\nb.obj", 2).value();
   CHECK(to_lines(error) == std::vector<std::string>{"a\\x0ab.obj:2: error: no \\x1b[31m\xc3\xa4"});
 }
 

@@ -104,7 +104,7 @@ TEST_CASE("forces that are apart on a surface are told together, unless it is in
   CHECK(warnings[0].others == std::vector<std::string>{"g"});
   CHECK(warnings[0].frames.to_string() == "3, 5");
   CHECK(warnings[1].surface == "b");
-  scene.origin.lines = {{"a.combine", 4}};
+  scene.origin.parts = {{"a.combine", {0}}};
   REQUIRE(log.warnings(scene, false).size() == 1);
   CHECK(log.warnings(scene, false)[0].surface == "b");
 }

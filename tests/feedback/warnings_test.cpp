@@ -173,7 +173,7 @@ TEST_CASE("forces far apart in one box are a warning that names them", "[feedbac
   }
   s.surfaces[0].solver.combine = Combine::Box;
   Scene told = s;
-  told.origin.lines = {{"a.combine", 4}};  // combine="box" is given explicitly, so it is intended
+  told.origin.parts = {{"a.combine", {0}}};  // combine="box" is given explicitly, so it is intended
   CHECK(warnings_of(told, 6).empty());
   s.forces[0].enabled = switch_at({{1, true}, {4, false}});
   REQUIRE(warnings_of(s, 6).size() == 1);

@@ -21,7 +21,7 @@ Surface with_shape(SurfaceShape shape) {
   return surface;
 }
 
-const SceneOrigin origin{"a.xml", {{"s", 2}, {"s.file", 4}}};
+const SceneOrigin origin = origin_of("a.xml", {{"s", 2}, {"s.file", 4}});
 
 std::string complaint(SurfaceShape shape) {
   const auto rest = make_rest_shape(with_shape(std::move(shape)), origin);

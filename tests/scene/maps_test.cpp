@@ -58,8 +58,8 @@ TEST_CASE("maps are read into their surface, and written again", "[scene][maps]"
   CHECK(maps[1].attribute == "_THICK");
   CHECK(maps[1].low == 0);
   CHECK(maps[1].high == -2);
-  CHECK(scene->origin.line_of("s", "map.b") == 5);
-  CHECK(scene->origin.line_of("s", "map.damping") == 7);
+  CHECK(scene->origin.place_of("s", "map.b").line == 5);
+  CHECK(scene->origin.place_of("s", "map.damping").line == 7);
 
   const std::string written = to_xml(*scene, "/folder").value();
   CHECK_THAT(written, Contains(R"(<map channel="b" file="soft.png" low="0.2" high="1.5"/>)"));

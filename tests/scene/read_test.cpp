@@ -81,18 +81,19 @@ TEST_CASE("the example of the format is read to exact values", "[scene][read]") 
   CHECK(crease.direction->at(1) == Value<3>{0, -1, 0});
 
   CHECK(scene.origin.file == "plate.xml");
-  CHECK(scene.origin.line_of("") == 2);
-  CHECK(scene.origin.line_of("", "end") == 2);
-  CHECK(scene.origin.line_of("sheet") == 3);
-  CHECK(scene.origin.line_of("sheet", "columns") == 4);
-  CHECK(scene.origin.line_of("sheet", "translate") == 5);
-  CHECK(scene.origin.line_of("sheet", "density") == 6);
-  CHECK(scene.origin.line_of("sheet", "sv1") == 7);
-  CHECK(scene.origin.line_of("sheet", "startFrame") == 8);
-  CHECK(scene.origin.line_of("poke", "center") == 10);
-  CHECK(scene.origin.line_of("poke", "magnitude") == 11);
-  CHECK(scene.origin.line_of("crease", "magnitude") == 18);
-  CHECK(scene.origin.line_of("crease", "enabled") == 18);  // not given: the line of the element
+  CHECK(scene.origin.place_of("").line == 2);
+  CHECK(scene.origin.place_of("", "end").line == 2);
+  CHECK(scene.origin.place_of("sheet").line == 3);
+  CHECK(scene.origin.place_of("sheet", "columns").line == 4);
+  CHECK(scene.origin.place_of("sheet", "translate").line == 5);
+  CHECK(scene.origin.place_of("sheet", "density").line == 6);
+  CHECK(scene.origin.place_of("sheet", "sv1").line == 7);
+  CHECK(scene.origin.place_of("sheet", "startFrame").line == 8);
+  CHECK(scene.origin.place_of("poke", "center").line == 10);
+  CHECK(scene.origin.place_of("poke", "magnitude").line == 11);
+  CHECK(scene.origin.place_of("crease", "magnitude").line == 18);
+  CHECK(scene.origin.place_of("crease", "enabled").line ==
+        18);  // not given: the line of the element
 }
 
 TEST_CASE("everything that is left out has its documented default", "[scene][read]") {
@@ -163,14 +164,14 @@ TEST_CASE("most of the format at once", "[scene][read]") {
   CHECK(mesh.object == "torso");
   CHECK(scene.surfaces.at(1).reading.wrap == Wrap::UV);
   CHECK(scene.forces.at(0).magnitude.curve().keys().overshoot == Overshoot::Contain);
-  CHECK(scene.origin.line_of("sheet", "scale") == 7);
-  CHECK(scene.origin.line_of("sheet", "translate") == 15);
+  CHECK(scene.origin.place_of("sheet", "scale").line == 7);
+  CHECK(scene.origin.place_of("sheet", "translate").line == 15);
 }
 
 TEST_CASE("reading twice gives the same", "[scene][read]") {
   const Scene first = scene_of(rich_scene);
   const Scene second = scene_of(rich_scene);
-  CHECK(first.origin.lines == second.origin.lines);
+  CHECK(first.origin.parts == second.origin.parts);
   CHECK(first.notes == second.notes);
   CHECK(first.forces.at(0).magnitude.curve().keys() ==
         second.forces.at(0).magnitude.curve().keys());

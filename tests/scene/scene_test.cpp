@@ -1,19 +1,35 @@
 #include "pliant/scene/scene.hpp"
 
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pliant/scene/text/source_map.hpp"
 #include "support/catch.hpp"
 
 namespace pliant {
 namespace {
 
-TEST_CASE("the line of a channel is its own, else its element's, else 0", "[scene]") {
+TEST_CASE("the place of a channel is its own, else its element's, else unknown", "[scene]") {
   SceneOrigin origin;
-  origin.lines = {{"", 1}, {".fps", 1}, {"sheet", 4}, {"sheet.density", 7}};
-  CHECK(origin.line_of("sheet") == 4);
-  CHECK(origin.line_of("sheet", "density") == 7);
-  CHECK(origin.line_of("sheet", "damping") == 4);
-  CHECK(origin.line_of("poke", "magnitude") == 0);
-  CHECK(origin.line_of("", "fps") == 1);
-  CHECK(SceneOrigin{}.line_of("sheet", "density") == 0);
+  origin.sources = std::make_shared<SourceMap>(
+      "a.xml", std::make_shared<SourceText>("\n\n\n<sheet>\n\n\ndensity"));
+  origin.parts = {{"", {0, {0, 1}}},
+                  {".fps", {0, {0, 1}}},
+                  {"sheet", {0, {4, 9}}},
+                  {"sheet.density", {0, {13, 20}}}};
+  CHECK(origin.place_of("sheet").line == 4);
+  CHECK(origin.place_of("sheet", "density").line == 7);
+  CHECK(origin.place_of("sheet", "damping").line == 4);
+  CHECK(origin.place_of("poke", "magnitude").line == 0);
+  CHECK(origin.place_of("", "fps").line == 1);
+  CHECK(SceneOrigin{}.place_of("sheet", "density").line == 0);
+  const auto range_of_last = [&](const std::vector<std::string>& of) {
+    return origin.last_of("sheet", of).range;
+  };
+  CHECK(range_of_last({"density", "damping"}) == TextRange{13, 20});
+  CHECK(range_of_last({"damping", "density"}) == TextRange{13, 20});
+  CHECK(range_of_last({"damping"}) == TextRange{4, 9});
 }
 
 TEST_CASE("scenes are compared by all their values, wherever they come from", "[scene]") {
@@ -75,7 +91,7 @@ TEST_CASE("scenes are compared by all their values, wherever they come from", "[
   }
   Scene elsewhere = make();
   elsewhere.origin.file = "a.xml";
-  elsewhere.notes.push_back({3, "a note", "a.xml"});
+  elsewhere.notes.push_back({{.line = 3}, "a note", "a.xml"});
   CHECK(scene == elsewhere);
 }
 

@@ -25,11 +25,11 @@ using xml::ElementPlace;
 /// A text, and its elements and attributes.
 struct Scanned {
   explicit Scanned(const std::string& of) : text(of) {
-    xml::Findings findings("a.xml");
+    xml::Findings findings("a.xml", SourceText::of(text));
     constexpr std::string_view roots[] = {"scene",   "fragment", "surface",   "material", "group",
                                           "point",   "grid",     "transform", "tangents", "solver",
                                           "animate", "mesh",     "radial",    "line"};
-    auto scanned = xml::scan_markup(text, findings, xml::most_markup, roots);
+    auto scanned = xml::scan_markup(findings, 0, xml::most_markup, roots);
     REQUIRE(scanned);
     markup = *std::move(scanned);
   }
@@ -224,8 +224,8 @@ TEST_CASE("a scene that is cut at random is the same scene", "[scene][sharing]")
     REQUIRE(scene);
     CHECK(to_xml(*scene, folder.path()).value() == uncut);
     // Each part of the scene is found in its file.
-    for (const SceneLine& part : scene->origin.lines) {
-      const ScenePlace place = scene->origin.place_at(part.line);
+    for (const ScenePart& part : scene->origin.parts) {
+      const ScenePlace place = scene->origin.place_of(part.place);
       const auto file = cutter.files().find(std::filesystem::path(place.file).filename());
       REQUIRE(file != cutter.files().end());
       CHECK(place.line <= line_at(file->second, file->second.size()));

@@ -373,7 +373,7 @@ TEST_CASE("the width of the solver's vectors changes no bit", "[simulation]") {
 
 TEST_CASE("what a run takes is known before it is allocated", "[simulation][memory]") {
   Scene s = scene({sheet("small"), sheet("large", 10'000)}, {poke("f", {0, 0, 0})});
-  s.origin = {"scene.xml", {{"large", 4}, {"small", 3}}};
+  s.origin = origin_of("scene.xml", {{"large", 4}, {"small", 3}});
   const auto too_large = Simulation::make(s, {.max_memory = 1'000'000'000});
   REQUIRE_FALSE(too_large);
   CHECK(too_large.error().code == ErrorCode::OutOfMemory);
@@ -460,7 +460,7 @@ TEST_CASE("errors come in the order of files and lines, each once", "[simulation
   s.surfaces[0].shape = MeshFile{"none.obj", ""};
   s.surfaces[1].material.density = -1;
   s.forces[0].force_radius = -1;
-  s.origin = {"s.xml", {{"a", 2}, {"a.file", 3}, {"b", 5}, {"f", 4}}};
+  s.origin = origin_of("s.xml", {{"a", 2}, {"a.file", 3}, {"b", 5}, {"f", 4}});
   const auto refused = Simulation::check(s);
   REQUIRE_FALSE(refused);
   std::vector<int> lines{refused.error().line};

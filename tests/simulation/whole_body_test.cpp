@@ -266,14 +266,14 @@ TEST_CASE("a whole body of which all nodes are held is told, not its tangents an
   quad.solver.region = SolvedRegion::All;
   quad.tangents.su0 = TangentChannel(Channel<1>(0.3));
   Scene s = scene({quad}, {push(1000, 0)}, 4);
-  s.origin.lines = {{"s.region", 7}};
+  s.origin = origin_of("s.xml", {{"s.region", 7}});
   auto simulation = Simulation::make(s).value();
   for (const int frame : simulation.frames()) REQUIRE(simulation.at(frame));
   const std::vector<Warning> warnings = simulation.warnings();
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0].message(),
              Contains("all nodes of \"s\" are held at frames 1-3: none can move"));
-  CHECK(line_of(warnings[0], s.origin) == 7);
+  CHECK(s.origin.place_of(place_of(warnings[0], s.origin)).line == 7);
 }
 
 TEST_CASE("a whole body has no other choice of regions", "[simulation][all]") {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "pliant/pliant.hpp"
+#include "pliant/scene/text/source_map.hpp"
 
 namespace pliant::testing {
 
@@ -34,6 +36,20 @@ inline Switch switch_at(std::vector<std::pair<double, bool>> keys) {
     curve_keys.keys.push_back(key);
   }
   return Switch(Curve<1>::make(std::move(curve_keys)).value());
+}
+
+/// Parts of a scene, in the order of names, that begin lines of a file.
+inline SceneOrigin origin_of(const std::string& file,
+                             const std::vector<std::pair<std::string, int>>& lines) {
+  SceneOrigin origin{.file = file};
+  std::string text;
+  for (const auto& [part, line] : lines) {
+    const auto begin = static_cast<std::uint32_t>(line - 1);
+    origin.parts.push_back({part, {0, {begin, begin}}});
+    text.resize(std::max<std::size_t>(text.size(), begin), '\n');
+  }
+  origin.sources = std::make_shared<SourceMap>(file, std::make_shared<SourceText>(text));
+  return origin;
 }
 
 /// A square sheet with a spacing of 1 between vertices.

@@ -20,14 +20,30 @@ enum class ErrorCode {
   Interrupted,   ///< the caller asked to stop
 };
 
+/// A stretch of a text up to, but not including, its end. All count from 1; columns count UTF-16
+/// code units, as editors do. 0: unknown.
+struct TextSpan {
+  int line = 0;
+  int column = 0;
+  int end_line = 0;
+  int end_column = 0;
+
+  friend bool operator==(const TextSpan&, const TextSpan&) = default;
+};
+
 /// One problem: its message and place. `others` contains further problems found in the same run, in
 /// the order in which they were found; their own `others` are empty.
 struct Error {
   ErrorCode code = ErrorCode::InvalidInput;
   std::string message;    ///< one line: the thing, the value, the rule
   std::string file = {};  ///< empty: not about a file
-  int line = 0;           ///< counted from 1; 0: unknown
+  int line = 0;           ///< of `TextSpan`, as the others
+  int column = 0;
+  int end_line = 0;
+  int end_column = 0;
   std::vector<Error> others = {};
+
+  TextSpan span() const { return {line, column, end_line, end_column}; }
 };
 
 /// A value, or the error that explains why there is none: a `tl::expected` that must not be

@@ -13,7 +13,6 @@ namespace pliant::edit {
 using xml::AttributePlace;
 using xml::blanks;
 using xml::ElementPlace;
-using xml::TextRange;
 
 namespace {
 
@@ -49,7 +48,7 @@ Result<void> Draft::scan() {
 }
 
 int Draft::line_of(Element element) const {
-  return xml::LineCounter(text_).line_of(place(element).name.begin);
+  return SourceText::of(text_)->span_of(place(element).name).line;
 }
 
 std::vector<Element> Draft::children(Element element) const {
@@ -73,9 +72,7 @@ std::vector<Element> Draft::children(Element element, std::string_view name) con
 }
 
 const AttributePlace* Draft::attribute(Element element, std::string_view name) const {
-  for (const AttributePlace& given : markup_.attributes_of(element))
-    if (given.name.of(text_) == name) return &given;
-  return nullptr;
+  return markup_.attribute_of(element, name, text_);
 }
 
 std::optional<std::string> Draft::value(Element element, std::string_view name) const {

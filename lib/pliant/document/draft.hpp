@@ -61,7 +61,7 @@ class Draft {
 
   // Noting changes. Each returns at once; nothing overlaps.
 
-  void replace(xml::TextRange range, std::string text);
+  void replace(TextRange range, std::string text);
   void insert(std::uint32_t at, std::string text) { replace({at, at}, std::move(text)); }
 
   /// Changes a value, or adds the attribute behind the others as these are laid out. Notes nothing
@@ -108,10 +108,10 @@ class Draft {
   /// The text of an element with its lines indented by `to` in place of `from`. Line ends in
   /// values, comments and texts stay.
   std::string reindented(Element element, std::string_view from, std::string_view to) const;
-  std::string reindented(xml::TextRange range, std::string_view from, std::string_view to) const;
+  std::string reindented(TextRange range, std::string_view from, std::string_view to) const;
 
   /// The range of an element and the blanks before it.
-  xml::TextRange with_blanks_before(Element element) const;
+  TextRange with_blanks_before(Element element) const;
   /// The end of a place, and of the comments that follow it on its line.
   std::uint32_t end_with_comments(std::uint32_t end) const;
 

@@ -72,8 +72,8 @@ Result<void> Editor::operator()(const Group& group) {
   for (const auto& [name, value] : attributes)
     texts.push_back(fmt::format("{}={}{}{}", name, around.layout.quote,
                                 xml::encoded(value, around.layout.quote), around.layout.quote));
-  const xml::TextRange range{draft_.place(*begin).whole().begin,
-                             draft_.end_with_comments(draft_.place(*end).end)};
+  const TextRange range{draft_.place(*begin).whole().begin,
+                        draft_.end_with_comments(draft_.place(*end).end)};
   const std::string inner = margin + around.layout.indent;
   draft_.replace(range, xml::opening_tag("group", texts, ">", margin, around.layout) +
                             around.layout.line_end + inner +

@@ -22,7 +22,7 @@ AnyCurve keyed(const Draft& draft, const xml::Element& element, KeyedCurve<D> re
   if (result.kind == xml::ValueKind::Boolean)
     result.defaults.interpolation.kind = Interpolation::Kind::Step;
   xml::Table table = xml::table_of(result.defaults, result.axis, result.kind);
-  xml::Findings findings(draft.file(), draft.should_stop());
+  xml::Findings findings(draft.file(), SourceText::of(draft.text()), draft.should_stop());
   xml::read_attributes(element, table, findings);
   return result;
 }
@@ -30,9 +30,9 @@ AnyCurve keyed(const Draft& draft, const xml::Element& element, KeyedCurve<D> re
 template <int D>
 Result<AnyCurve> read_curve_of(const Draft& draft, Element animate, xml::ValueKind kind,
                                const std::string& channel) {
-  xml::Tree tree = draft.tree();
-  const xml::Element element(tree, animate);
-  xml::Findings findings(draft.file(), draft.should_stop());
+  const xml::Tree tree = draft.tree();
+  const xml::Element element(tree, 0, animate);
+  xml::Findings findings(draft.file(), SourceText::of(draft.text()), draft.should_stop());
   const auto axis = draft.name(animate) == "falloff" ? xml::KeyAxis::Falloff : xml::KeyAxis::Frame;
   auto curve = xml::read_curve<D>(element, axis, kind, channel, findings);
   if (!curve) return fail(findings.to_error());
@@ -59,7 +59,7 @@ bool is_computed(const Draft& draft, Element element) {
 /// The curve of a channel that has keys with `$`.
 Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
                                      const std::string& channel, const ParseScene& parse) {
-  xml::Tree tree = draft.tree();
+  const xml::Tree tree = draft.tree();
   const auto scene = parse(draft.text());
   if (!scene) return fail(scene.error());
   const std::vector<NamedChannel> channels = channels_of(*scene);
@@ -70,7 +70,7 @@ Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
                     "a number first",
                     channel, draft.name(animate)));
   const auto with = [&]<int D>(xml::ValueKind kind, const Curve<D>& curve) {
-    return keyed<D>(draft, xml::Element(tree, animate),
+    return keyed<D>(draft, xml::Element(tree, 0, animate),
                     {.channel = channel,
                      .animate = animate,
                      .elements = {},

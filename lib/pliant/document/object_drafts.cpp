@@ -68,14 +68,14 @@ ObjectDrafts::Part* ObjectDrafts::part_of(std::string_view name) {
 std::string ObjectDrafts::scene_around(Element object, std::size_t& begin) const {
   std::string opening, closing;
   for (Element outer = whole_.place(object).parent;; outer = whole_.place(outer).parent) {
-    const xml::TextRange tag{outer == Draft::root ? whole_.place(outer).opening_tag().begin
-                                                  : whole_.with_blanks_before(outer).begin,
-                             whole_.place(outer).tag_end};
+    const TextRange tag{outer == Draft::root ? whole_.place(outer).opening_tag().begin
+                                             : whole_.with_blanks_before(outer).begin,
+                        whole_.place(outer).tag_end};
     opening.insert(0, tag.of(whole_.text()));
     closing += fmt::format("</{}>", whole_.name(outer));
     if (outer == Draft::root) break;
   }
-  const xml::TextRange range = whole_.with_blanks_before(object);
+  const TextRange range = whole_.with_blanks_before(object);
   begin = opening.size() + whole_.place(object).whole().begin - range.begin;
   return opening + std::string(range.of(whole_.text())) + closing;
 }

@@ -95,7 +95,7 @@ std::size_t most_cubics(double length) {
 
 std::optional<Error> beyond_bounds(const Segments& segments) {
   const auto error = [](std::string message) {
-    return Error{ErrorCode::InvalidInput, std::move(message)};
+    return Error{.code = ErrorCode::InvalidInput, .message = std::move(message)};
   };
   for (std::size_t k = 0; k < segments.frames.size(); ++k) {
     if (!(std::fabs(segments.frames[k]) <= largest_held_frame)) {

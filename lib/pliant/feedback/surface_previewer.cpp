@@ -367,7 +367,7 @@ Result<void> SurfacePreviewer::share(PreviewCase& one, const BodyInputs& inputs,
 tl::unexpected<Error> SurfacePreviewer::located(Error error, int frame) const {
   if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface_.name, frame, error.message);
-  return fail(scene_.origin.located(std::move(error), scene_.origin.line_of(surface_.name)));
+  return fail(scene_.origin.located(std::move(error), scene_.origin.at(surface_.name)));
 }
 
 }  // namespace pliant

@@ -126,23 +126,23 @@ std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, cons
   return warnings;
 }
 
-int line_of(const Warning& warning, const SceneOrigin& origin) {
-  if (!warning.force.empty()) return origin.line_of(warning.force);
+TextPlace place_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.force.empty()) return origin.at(warning.force);
   if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
       warning.kind == Warning::Kind::LoosePatch) {
-    return origin.line_of(warning.surface, "file");
+    return origin.at(warning.surface, "file");
   }
   if (warning.kind == Warning::Kind::CacheOutside) {
-    return origin.line_of(warning.surface, "cache");
+    return origin.at(warning.surface, "cache");
   }
   if (warning.kind == Warning::Kind::NeverStarts) {
-    return origin.line_of(warning.surface, "startFrame");
+    return origin.at(warning.surface, "startFrame");
   }
-  if (warning.kind == Warning::Kind::AllHeld) return origin.line_of(warning.surface, "region");
+  if (warning.kind == Warning::Kind::AllHeld) return origin.at(warning.surface, "region");
   for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
-    if (origin.gives(warning.surface, tangent)) return origin.line_of(warning.surface, tangent);
+    if (origin.gives(warning.surface, tangent)) return origin.at(warning.surface, tangent);
   }
-  return origin.line_of(warning.surface);
+  return origin.at(warning.surface);
 }
 
 }  // namespace pliant

@@ -54,6 +54,6 @@ std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, cons
 
 /// The line of a warning's cause in the expanded text: the force, or the tangents or start frame of
 /// its surface.
-int line_of(const Warning& warning, const SceneOrigin& origin);
+TextPlace place_of(const Warning& warning, const SceneOrigin& origin);
 
 }  // namespace pliant

@@ -211,12 +211,13 @@ Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& s
   const CacheFile& file = surface.cache;
   const auto located = [&](Error error) {
     if (error.code == ErrorCode::Unreadable)
-      return fail(unreadable_mesh(error, surface.name, scene.origin, "cache"));
+      return fail(scene.origin.located(
+          {.code = error.code, .message = unreadable_mesh(error, surface.name)},
+          scene.origin.at(surface.name, "cache")));
     if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     const std::string part = error.file.empty() ? "" : fmt::format("cache {}: ", error.file);
     error.message = fmt::format("surface \"{}\": {}{}", surface.name, part, error.message);
-    return fail(
-        scene.origin.located(std::move(error), scene.origin.line_of(surface.name, "cache")));
+    return fail(scene.origin.located(std::move(error), scene.origin.at(surface.name, "cache")));
   };
   auto cache = PointCache::open(file.path, scene.origin.root);
   if (!cache) return located(cache.error());

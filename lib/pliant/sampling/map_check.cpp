@@ -197,14 +197,14 @@ class MapChecker {
     errors_.push_back(scene_.origin.located(
         {.code = ErrorCode::InvalidInput,
          .message = fmt::format("{}.{}{} {}", surface_.name, channel, when, complaint)},
-        line_of(channel, parts)));
+        place_of(channel, parts)));
   }
 
   // Of the map that changes the channel; else of the last of all that may have caused it.
-  int line_of(std::string_view channel, const std::vector<std::string>& parts) const {
+  TextPlace place_of(std::string_view channel, const std::vector<std::string>& parts) const {
     const std::string own = "map." + std::string(channel);
-    if (scene_.origin.gives(surface_.name, own)) return scene_.origin.line_of(surface_.name, own);
-    return scene_.origin.last_line_of(surface_.name, parts);
+    if (scene_.origin.gives(surface_.name, own)) return scene_.origin.at(surface_.name, own);
+    return scene_.origin.last_of(surface_.name, parts);
   }
 
   const Scene& scene_;

@@ -169,7 +169,7 @@ class MapReader {
     const std::string file = error.file.empty() ? "" : error.file + ": ";
     error.message =
         fmt::format("{}.{}: {}{}", surface_.name, name_of(map.channel), file, error.message);
-    return origin_.located(std::move(error), origin_.line_of(surface_.name, name_of(map.channel)));
+    return origin_.located(std::move(error), origin_.at(surface_.name, name_of(map.channel)));
   }
 
   const Surface& surface_;

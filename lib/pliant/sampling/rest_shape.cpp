@@ -67,7 +67,7 @@ Result<void> take(std::size_t bytes, const std::string& surface, const SceneOrig
   return fail(origin.located(
       {.code = ErrorCode::OutOfMemory,
        .message = fmt::format("surface \"{}\" {}", surface, memory.complaint(bytes))},
-      origin.line_of(surface)));
+      origin.at(surface)));
 }
 
 // `surface "head", mesh head.obj`
@@ -283,7 +283,7 @@ class ShapeMaker {
           {.code = ErrorCode::InvalidInput,
            .message = fmt::format("{}: {}, but the mesh is read as a surface{}", title_of(surface_),
                                   reason, shape.note.empty() ? "" : ", since it is no even grid")},
-          origin_.line_of(surface_.name, attribute)));
+          origin_.at(surface_.name, attribute)));
     };
     const SolverSettings& solver = surface_.solver;
     if (solver.reference != Reference::Rest) {
@@ -305,9 +305,11 @@ class ShapeMaker {
   // An unreadable file is reported as a problem of the scene; an error in its contents already
   // names the file.
   Error at_scene(Error error, const std::string& attribute = "file") const {
-    if (error.code == ErrorCode::Unreadable) return unreadable_mesh(error, surface_.name, origin_);
+    if (error.code == ErrorCode::Unreadable)
+      return origin_.located({.code = error.code, .message = unreadable_mesh(error, surface_.name)},
+                             origin_.at(surface_.name, "file"));
     if (!error.file.empty() || error.code == ErrorCode::Interrupted) return error;
-    return origin_.located(std::move(error), origin_.line_of(surface_.name, attribute));
+    return origin_.located(std::move(error), origin_.at(surface_.name, attribute));
   }
   Error about_mesh(Error error, const std::string& attribute = "file") const {
     if (error.code == ErrorCode::Interrupted) return error;
@@ -433,7 +435,7 @@ Result<void> bind_to_driver(ReservedShape& driven, const Surface& own, const Res
     return fail(scene.origin.located(
         {.message =
              fmt::format("{} cannot drive {}: {}", title_of(driving), own.name, error.message)},
-        scene.origin.line_of(own.name, "drivenBy")));
+        scene.origin.at(own.name, "drivenBy")));
   };
   if (!triangles) return refuse(triangles.error());
   auto binding =
@@ -453,7 +455,7 @@ std::optional<SceneNote> note_on(const Surface& surface, const std::string& note
                                  const SceneOrigin& origin) {
   if (note.empty()) return {};
   ScenePlace place = origin.place_of(surface.name, "file");
-  return SceneNote{place.line, place.told(note), std::move(place.file)};
+  return SceneNote{place, place.told(note), std::move(place.file)};
 }
 
 }  // namespace pliant

@@ -22,9 +22,9 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
   };
   const std::string& root = scene.origin.root;
   if (!scene.origin.file.empty()) add(scene.origin.file, "the scene", {});
-  if (scene.origin.files) {
-    for (const SceneText& text : scene.origin.files->texts()) {
-      if (text.parent != SceneText::none) add(text.file, "a file that the scene includes", root);
+  if (scene.origin.sources) {
+    for (const SourceMap::Source& source : scene.origin.sources->sources()) {
+      if (source.include.is_known()) add(source.file, "a file that the scene includes", root);
     }
   }
   for (const Surface& surface : scene.surfaces) {
@@ -50,19 +50,20 @@ std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& sc
   std::error_code ignored;
   // A pipe would be empty for the one who reads it next.
   if (!std::filesystem::is_regular_file(scene, ignored)) return files;
-  const auto text = read_file(scene, xml::most_expanded, should_stop);
+  auto text = read_file(scene, xml::most_expanded, should_stop);
   if (!text) return files;
-  xml::Findings findings(scene.string(), should_stop);
-  const auto markup = xml::scan_markup(*text, findings);
+  const auto sources =
+      std::make_shared<SourceMap>(scene.string(), std::make_shared<SourceText>(*std::move(text)));
+  xml::Findings findings(sources, should_stop);
+  const auto markup = xml::scan_markup(findings);
   if (!markup) return files;
-  const xml::SourceText source{*text, *markup, scene.string(), scene.parent_path()};
   xml::TextFiles disk = xml::files_on_disk(root, should_stop);
   std::set<std::filesystem::path> seen;
   disk.identify = [&, identify = disk.identify](const std::filesystem::path& file) {
     if (file != scene && seen.insert(file).second) files.push_back(file);
     return identify(file);
   };
-  if (xml::needs_expansion(source, findings)) xml::expand(source, disk, findings);
+  xml::expand(*markup, scene.parent_path(), disk, *sources, findings);
   return files;
 }
 

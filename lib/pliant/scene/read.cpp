@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
@@ -28,14 +29,14 @@ using namespace xml;
 namespace {
 
 // Of the work for each, see StopPoll.
-constexpr std::size_t parts_of_object = 1024, parts_of_channel = 256, parts_of_line = 64;
+constexpr std::size_t parts_of_object = 1024, parts_of_channel = 256, parts_of_place = 64;
 
 /// Appends all children that have a valid name, whatever their other problems, and those of groups.
 void add_named_children(const Element& parent, std::vector<Named>& named, Findings& findings) {
   for (auto child = parent.first_child(); child; child = child->next()) {
     if (findings.is_over(parts_of_object)) return;
     if (const auto name = child->attribute("name"); name && is_name(name->value))
-      named.push_back({child->name(), name->value, name->line});
+      named.push_back({child->name(), name->value, name->value_place()});
     if (parent.is_root() && child->name() == "group") add_named_children(*child, named, findings);
   }
 }
@@ -86,15 +87,13 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
              (is_all || is_constant(name, attribute));
     };
     for (Error& error : check_channels(scene, is_checked, is_over))
-      file.findings.add_problem(error.line, std::move(error.message));
+      file.findings.add_problem(std::move(error));
   }
   if (file.findings.problem_count() == 0) return;
   for (const NamedMesh& mesh : file.meshes) {
     if (file.findings.is_over(parts_of_object)) return;
     if (const auto readable = OpenFile::open(mesh.path, file.root); !readable)
-      file.findings.add_problem(
-          mesh.line,
-          unreadable_mesh(readable.error(), mesh.surface, scene.origin, mesh.attribute).message);
+      file.findings.add_problem(mesh.place, unreadable_mesh(readable.error(), mesh.surface));
   }
 }
 
@@ -105,44 +104,25 @@ Scene read_root(const Element& root, SceneFile& file) {
   for (Surface& surface : scene.surfaces) {
     auto* const mesh = std::get_if<MeshFile>(&surface.shape);
     if (!mesh) continue;
-    const auto line = file.lines.find(fmt::format("{}.file", surface.name));
-    mesh->root = (file.root.empty() ? file.folder_at(line != file.lines.end() ? line->second : 0)
-                                    : file.root)
-                     .string();
+    const auto named = file.parts.find(fmt::format("{}.file", surface.name));
+    mesh->root =
+        (file.root.empty() ? file.folder_of(named != file.parts.end() ? named->second.text : 0)
+                           : file.root)
+            .string();
     if (mesh->root.empty()) mesh->root = ".";  // empty would mean the mesh's own folder
   }
 
   std::vector<Named> named;
   add_named_children(root, named, file.findings);
-  scene.origin.lines.reserve(file.lines.size());
-  for (; !file.lines.empty() && !file.findings.is_over(parts_of_line);) {
-    auto first = file.lines.extract(file.lines.begin());
-    scene.origin.lines.push_back({std::move(first.key()), first.mapped()});
+  scene.origin.sources = file.sources;
+  scene.origin.parts.reserve(file.parts.size());
+  for (; !file.parts.empty() && !file.findings.is_over(parts_of_place);) {
+    auto first = file.parts.extract(file.parts.begin());
+    scene.origin.parts.push_back({std::move(first.key()), first.mapped()});
   }
   if (file.is_expanded) check(scene, named, file);
   note_idle_targets(scene, file.findings);
   return scene;
-}
-
-/// Scans the text, and expands it into `expanded` if it needs that; `text` is then the expanded
-/// one. Null: it cannot be read, not even to find further problems.
-std::optional<Markup> prepare(std::string_view& text, std::string& expanded,
-                              const std::string& name, SceneFile& file) {
-  std::optional<Markup> markup = scan_markup(text, file.findings);
-  if (!markup) return std::nullopt;
-  const SourceText source{text, *markup, name, file.folder};
-  if (!needs_expansion(source, file.findings)) return markup;
-  std::optional<Expansion> expansion = expand(source, file.texts, file.findings);
-  if (!expansion) return std::nullopt;
-  expanded = std::move(expansion->text);
-  text = expanded;
-  file.findings.use(expansion->files, std::move(expansion->values));
-  file.files = std::move(expansion->files);
-  file.is_expanded = expansion->is_sound;
-  // Each file is well-formed, but all together may be nested too deep, or too large.
-  markup = scan_markup(text, file.findings);
-  for (const std::size_t at : expansion->unknown) expanded[at] = unknown_value;
-  return markup;
 }
 
 /// Reads a root that is probably a <scene>.
@@ -151,7 +131,7 @@ std::optional<Scene> read_document(const Element& root, SceneFile& file) {
   if (root.name() != expected[0]) {
     const bool is_fragment = root.name() == "fragment";
     file.findings.add_problem(
-        root.line(),
+        root.place(),
         is_fragment ? "the root element is <fragment>, which is not a scene, but what a scene "
                       "may include"
         // The text may be of any file, and its words a secret.
@@ -173,33 +153,40 @@ Result<void> check_size(std::string_view text, const std::string& name) {
 
 Result<Scene> load_scene(const std::string& file, const std::string& root,
                          const StopRequest& should_stop) {
-  const Result<std::string> text = read_file(file, largest_scene_file, should_stop);
+  Result<std::string> text = read_file(file, largest_scene_file, should_stop);
   if (!text) return fail(text.error());
-  return parse_scene(*text, file, std::filesystem::path(file).parent_path(), root, should_stop);
+  return parse_scene_of(*std::move(text), file, folder_of_file(file), root,
+                        files_on_disk(root, should_stop), should_stop);
 }
 
 Result<Scene> parse_scene(std::string_view text, const std::string& name, const std::string& folder,
                           const std::string& root, const StopRequest& should_stop) {
-  return parse_scene_of(text, name, folder, root, files_on_disk(root, should_stop), should_stop);
+  if (auto fits = check_size(text, name); !fits) return fail(fits.error());
+  return parse_scene_of(std::string(text), name, folder, root, files_on_disk(root, should_stop),
+                        should_stop);
 }
 
-Result<Scene> xml::parse_scene_of(std::string_view text, const std::string& name,
+Result<Scene> xml::parse_scene_of(std::string text, const std::string& name,
                                   const std::string& folder, const std::string& root,
                                   TextFiles texts, const StopRequest& should_stop) {
   if (auto fits = check_size(text, name); !fits) return fail(fits.error());
+  const auto sources =
+      std::make_shared<SourceMap>(name, std::make_shared<SourceText>(std::move(text)));
   SceneFile file{.folder = folder,
                  .root = root,
                  .texts = std::move(texts),
-                 .findings = Findings(name, should_stop)};
-  std::string expanded;
-  const std::optional<Markup> markup = prepare(text, expanded, name, file);
+                 .sources = sources,
+                 .findings = Findings(sources, should_stop)};
+  const std::optional<Markup> markup = scan_markup(file.findings);
   if (!markup) return fail(file.findings.to_error());
-  Tree tree(text, *markup);
-  std::optional<Scene> scene = read_document(tree.root(), file);
+  const std::optional<Expansion> expansion =
+      expand(*markup, file.folder, file.texts, *sources, file.findings);
+  if (!expansion) return fail(file.findings.to_error());
+  file.is_expanded = expansion->is_sound;
+  std::optional<Scene> scene = read_document(expansion->tree.root(), file);
   if (!scene || file.findings.problem_count() != 0) return fail(file.findings.to_error());
   scene->origin.file = name;
   scene->origin.root = root;
-  if (file.files && file.files->texts().size() > 1) scene->origin.files = std::move(file.files);
   scene->notes = file.findings.notes();
   return std::move(*scene);
 }

@@ -4,16 +4,14 @@
 #include <utility>
 
 #include "pliant/scene/format/description.hpp"
+#include "pliant/scene/text/source_map.hpp"
 
 namespace pliant {
 namespace {
 
-/// The line of a part, 0 if it is not in the file.
-int find_line(const std::vector<SceneLine>& lines, const std::string& part) {
-  const auto found = std::lower_bound(
-      lines.begin(), lines.end(), part,
-      [](const SceneLine& line, const std::string& wanted) { return line.part < wanted; });
-  return found != lines.end() && found->part == part ? found->line : 0;
+const ScenePart* find_part(const std::vector<ScenePart>& parts, std::string_view name) {
+  const auto found = std::ranges::lower_bound(parts, name, {}, &ScenePart::name);
+  return found != parts.end() && found->name == name ? &*found : nullptr;
 }
 
 }  // namespace
@@ -38,43 +36,45 @@ std::string_view kind_of(const Force& force) {
 
 void SceneOrigin::rename(const std::string& name) {
   file = name;
-  if (files) files->rename(name);
+  if (!sources) return;
+  SourceMap renamed = *sources;
+  renamed.rename(name);
+  sources = std::make_shared<SourceMap>(std::move(renamed));
 }
 
-ScenePlace SceneOrigin::place_at(int line) const {
-  return files ? files->place_of(line) : ScenePlace{file, line};
+TextPlace SceneOrigin::at(const std::string& name, const std::string& attribute) const {
+  if (!sources) return {};
+  const ScenePart* part = find_part(parts, name + '.' + attribute);
+  if (!part) part = find_part(parts, name);
+  return part ? part->place : TextPlace{};
 }
 
-ScenePlace SceneOrigin::place_of(const std::string& name, const std::string& attribute) const {
-  return place_at(line_of(name, attribute));
+TextPlace SceneOrigin::last_of(const std::string& name,
+                               const std::vector<std::string>& attributes) const {
+  TextPlace last;
+  for (const std::string& attribute : attributes) {
+    const TextPlace place = at(name, attribute);
+    if (!last.is_known() || (place.is_known() && sources->is_before(last, place))) last = place;
+  }
+  return last;
+}
+
+ScenePlace SceneOrigin::place_of(const TextPlace& place) const {
+  return sources ? sources->place_of(place) : ScenePlace{{}, file};
 }
 
 bool SceneOrigin::is_own(const std::string& name, const std::string& attribute) const {
-  return !files || files->text_of(line_of(name, attribute)) == 0;
+  return at(name, attribute).text <= 0;
 }
 
-Error SceneOrigin::located(Error error, int line) const {
-  ScenePlace place = place_at(line);
-  error.message = place.told(std::move(error.message));
-  error.file = std::move(place.file);
-  error.line = place.line;
+Error SceneOrigin::located(Error error, const TextPlace& place) const {
+  if (sources) return sources->located(std::move(error), place);
+  error.file = file;
   return error;
 }
 
-int SceneOrigin::line_of(const std::string& name, const std::string& attribute) const {
-  if (gives(name, attribute)) return find_line(lines, name + '.' + attribute);
-  return find_line(lines, name);
-}
-
-int SceneOrigin::last_line_of(const std::string& name,
-                              const std::vector<std::string>& attributes) const {
-  int line = 0;
-  for (const std::string& attribute : attributes) line = std::max(line, line_of(name, attribute));
-  return line;
-}
-
 bool SceneOrigin::gives(const std::string& name, const std::string& attribute) const {
-  return find_line(lines, name + '.' + attribute) != 0;
+  return find_part(parts, name + '.' + attribute) != nullptr;
 }
 
 double frame_length(const Scene& scene, const Surface& surface, int frame) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -19,7 +20,7 @@
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/mesh/written/nurbs_net.hpp"
 #include "pliant/mesh/written/subdivision.hpp"
-#include "pliant/scene/text/line_map.hpp"
+#include "pliant/scene/text/text_place.hpp"
 #include "pliant/timeline/channel.hpp"
 #include "pliant/timeline/curve.hpp"
 #include "pliant/timeline/position.hpp"
@@ -278,56 +279,54 @@ struct Group {
   friend bool operator==(const Group&, const Group&) = default;
 };
 
-/// A part of a scene that its file contains.
-struct SceneLine {
-  std::string part;  ///< `NAME` or `NAME.attribute`; the scene itself: ``, `.fps`, `.end`
-  int line = 0;      ///< of the expanded text, counted from 1
+class SourceMap;
 
-  friend bool operator==(const SceneLine&, const SceneLine&) = default;
+/// A part of a scene that its file contains.
+struct ScenePart {
+  std::string name;  ///< `NAME` or `NAME.attribute`; the scene itself: ``, `.fps`, `.end`
+  TextPlace place;
+
+  friend bool operator==(const ScenePart&, const ScenePart&) = default;
 };
 
-/// The lines of a scene's parts in its file, for messages. Empty for a scene built in code. Lines
-/// are those of the expanded text, in which each included file stands in the place of its
-/// <include>; without one they are those of the file.
+/// The places of a scene's parts in its file and those that it includes, for messages. Empty for a
+/// scene built in code.
 struct SceneOrigin {
-  std::string file;                   ///< the name given by the caller
-  std::vector<SceneLine> lines;       ///< in the order of `part`, each part once
-  std::optional<LineMap> files = {};  ///< absent: nothing is included
+  std::string file;                               ///< the name given by the caller
+  std::vector<ScenePart> parts = {};              ///< in the order of names, each once
+  std::shared_ptr<const SourceMap> sources = {};  ///< null: built in code
   /// The folder that must contain all files that the scene leads to, whenever they are opened;
   /// empty: they may be anywhere.
   std::string root = {};
 
-  /// The file and line of a line of the expanded text.
-  ScenePlace place_at(int line) const;
-
   /// The scene's own file has another name from now on.
   void rename(const std::string& name);
 
-  /// The file and line of `NAME.attribute`, otherwise of `NAME`.
-  ScenePlace place_of(const std::string& name, const std::string& attribute = {}) const;
+  /// The place of `NAME.attribute`, otherwise of `NAME`; unknown: neither is in a file.
+  TextPlace at(const std::string& name, const std::string& attribute = {}) const;
+
+  /// The last of the places of these attributes.
+  TextPlace last_of(const std::string& name, const std::vector<std::string>& attributes) const;
+
+  ScenePlace place_of(const TextPlace& place) const;
+  ScenePlace place_of(const std::string& name, const std::string& attribute = {}) const {
+    return place_of(at(name, attribute));
+  }
 
   /// Whether it stands in the scene's own file, not in one that is included.
   bool is_own(const std::string& name, const std::string& attribute = {}) const;
 
-  /// The error at a line of the expanded text: with its file, its line there, and, at the end of
-  /// the message, how the file was included.
-  Error located(Error error, int line) const;
-
-  /// The line of `NAME.attribute`, otherwise of `NAME`, otherwise 0.
-  int line_of(const std::string& name, const std::string& attribute = {}) const;
-
-  /// The last of the lines of these attributes.
-  int last_line_of(const std::string& name, const std::vector<std::string>& attributes) const;
+  /// The error at a place; at the end of the message, how its file was included.
+  Error located(Error error, const TextPlace& place) const;
 
   /// Whether the file gives the attribute.
   bool gives(const std::string& name, const std::string& attribute) const;
 };
 
 /// A remark on valid content of a scene file, such as a tangent that the curve rules shortened.
-struct SceneNote {
-  int line = 0;         ///< counted from 1
-  std::string message;  ///< one line, begins with the channel: `poke.magnitude: key 12: …`
-  std::string file;     ///< the scene's, or one that is included
+struct SceneNote : TextSpan {
+  std::string message;    ///< one line, begins with the channel: `poke.magnitude: key 12: …`
+  std::string file = {};  ///< the scene's, or one that is included
 
   friend bool operator==(const SceneNote&, const SceneNote&) = default;
 };

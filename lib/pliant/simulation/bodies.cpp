@@ -270,7 +270,8 @@ Result<Frame> Bodies::output(int frame, Frame reuse) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const StageTimer timer(profile_of(k), Stage::Output);
     if (context_.is_stopped())
-      return fail(located(Error{ErrorCode::Interrupted, {}}, scene_.surfaces[k], frame));
+      return fail(
+          located({.code = ErrorCode::Interrupted, .message = {}}, scene_.surfaces[k], frame));
     if (auto done = show(k, frame, reuse.surfaces_[k]); !done) return fail(done.error());
   }
   return reuse;
@@ -403,7 +404,7 @@ Error Bodies::located(Error error, const Surface& surface, int frame) const {
   // No surface caused an interruption.
   if (error.code == ErrorCode::Interrupted) return with_frame(std::move(error), frame);
   error.message = fmt::format("surface \"{}\", frame {}: {}", surface.name, frame, error.message);
-  return scene_.origin.located(std::move(error), scene_.origin.line_of(surface.name));
+  return scene_.origin.located(std::move(error), scene_.origin.at(surface.name));
 }
 
 Profile* Bodies::profile_of(std::size_t surface) {

@@ -78,7 +78,7 @@ Result<void> key_rates(Scene& scene) {
       return fail(scene.origin.located(
           {ErrorCode::InvalidInput,
            fmt::format("{}.rate is {}, but a live run takes at most 1e150", force.name, rate[0])},
-          scene.origin.line_of(force.name, "rate")));
+          scene.origin.at(force.name, "rate")));
     }
     noise->rate = curve_of<1>({step_key<1>(scene.start, rate)});
   }
@@ -393,7 +393,7 @@ Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& opti
          fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
                      "is not known before",
                      surface.name, *surface.solver.loop)},
-        scene.origin.line_of(surface.name, "loop")));
+        scene.origin.at(surface.name, "loop")));
   }
   if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
   auto run = std::make_unique<Run>(std::move(scene), options);

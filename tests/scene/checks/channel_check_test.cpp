@@ -129,7 +129,7 @@ TEST_CASE("what happens outside the range is no matter", "[scene][channels]") {
 
 TEST_CASE("a channel's error has the line where it was written", "[scene][channels]") {
   Scene s = scene({sheet("s")}, {poke("f", {0, 0, 0})});
-  s.origin = {"a.xml", {{"f", 9}, {"s", 3}, {"s.density", 5}}};
+  s.origin = origin_of("a.xml", {{"f", 9}, {"s", 3}, {"s.density", 5}});
   s.surfaces[0].material.density = -1.0;
   s.forces[0].force_radius = -1.0;
   const auto errors = check_channels(s);

@@ -89,7 +89,7 @@ TEST_CASE("every problem is found, each with its line", "[scene][check]") {
   Scene s = scene({sheet("a")}, {poke("a", {0, 0, 0})});
   s.fps = -1;
   s.forces[0].targets = {"x", "y"};
-  s.origin = {"s.xml", {{"", 1}, {".fps", 2}, {"a", 5}, {"a.targets", 7}}};
+  s.origin = origin_of("s.xml", {{"", 1}, {".fps", 2}, {"a", 5}, {"a.targets", 7}});
   const auto errors = check_scene(s);
   REQUIRE(errors.size() == 4);
   CHECK(errors[0].line == 2);

@@ -124,7 +124,7 @@ TEST_CASE("a group holds forces of every kind, which stand among all others", "[
     CHECK((force.group.empty() || force.group == "hand"));
   }
   CHECK(order == "before. p! r! l! u! v! n! i! after. ");
-  CHECK(scene.origin.line_of("p") == 3);
+  CHECK(scene.origin.place_of("p").line == 3);
 }
 
 TEST_CASE("what is wrong in a group is told", "[scene][group]") {

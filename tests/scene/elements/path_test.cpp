@@ -95,7 +95,7 @@ TEST_CASE("notes and lines of a progress name it", "[scene][path]") {
                                                 "<key frame=\"9\" value=\"1\"/>")));
   REQUIRE(scene.notes.size() == 1);
   CHECK_THAT(scene.notes[0].message, contains_text("poke.center.progress: key 1: "));
-  CHECK(scene.origin.line_of("poke", "center.progress") == 7);
+  CHECK(scene.origin.place_of("poke", "center.progress").line == 7);
 }
 
 }  // namespace

@@ -23,14 +23,19 @@ struct ReadHarbour {
 
 ReadHarbour read_harbour(const std::string& text) {
   ReadHarbour result;
-  xml::SceneFile file{.folder = {}, .root = {}, .texts = {}, .findings = xml::Findings("h.xml")};
-  const auto markup = xml::scan_markup(text, file.findings);
+  const auto sources = std::make_shared<SourceMap>("h.xml", SourceText::of(text));
+  xml::SceneFile file{.folder = {},
+                      .root = {},
+                      .texts = {},
+                      .sources = sources,
+                      .findings = xml::Findings(sources)};
+  const auto markup = xml::scan_markup(file.findings);
   REQUIRE(markup);
-  xml::Tree tree(text, *markup);
+  const xml::Tree tree(text, *markup);
   xml::Contents contents = xml::contents_of(result.harbour);
   xml::read_contents(tree.root(), contents, "", file);
   for (const Error& error : file.findings.problems()) result.problems.push_back(error.message);
-  result.lines = file.lines;
+  for (const auto& [part, place] : file.parts) result.lines[part] = sources->place_of(place).line;
   return result;
 }
 

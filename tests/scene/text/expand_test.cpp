@@ -402,8 +402,7 @@ TEST_CASE("notes and origins name the file", "[scene][expand]") {
   CHECK(scene.origin.is_own(""));
   // Without an include nothing is different.
   const Scene plain = Shot(sheet_of("$w", define("w", "2"))).scene();
-  CHECK_FALSE(plain.origin.files);
-  CHECK(plain.origin.line_of("sheet") == 2);
+  CHECK(plain.origin.place_of("sheet").line == 2);
 }
 
 TEST_CASE("lines are kept by what is replaced", "[scene][expand]") {
@@ -718,21 +717,6 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
   Shot others(body);
   others.fragment("a.xml", define("id", "n") + "<radial name=\"$id\" centre=\"0 0 0\"/>");
   CHECK(others.problems().size() == 1);
-}
-
-TEST_CASE("a text without includes and definitions is left as it is", "[scene][expand]") {
-  const auto needs = [](std::string_view text) {
-    xml::Findings findings("a.xml");
-    const auto markup = xml::scan_markup(text, findings);
-    REQUIRE(markup);
-    return xml::needs_expansion({text, *markup, "a.xml", ""}, findings);
-  };
-  CHECK_FALSE(needs(rich_scene));
-  CHECK_FALSE(
-      needs("<scene><!-- <include file='a'/> <define/> --><includes/><a b='include'/></scene>"));
-  CHECK(needs("<scene><include file='a'/></scene>"));
-  CHECK(needs("<scene><a><define/></a></scene>"));
-  CHECK(needs("<scene a='$'/>"));
 }
 
 TEST_CASE("the values of attributes survive being written anew", "[scene][expand]") {

@@ -128,28 +128,28 @@ class Adjust {
 };
 
 // Attributes that count as given from now on, not yet among those of the scene.
-class NewLines {
+class NewParts {
  public:
-  explicit NewLines(Scene& scene) : scene_(scene) {}
+  explicit NewParts(Scene& scene) : scene_(scene) {}
 
   void add(const std::string& name, const std::string& attribute) {
     if (scene_.origin.gives(name, attribute)) return;
-    added_.push_back({name + '.' + attribute, std::max(1, scene_.origin.line_of(name))});
+    added_.push_back({name + '.' + attribute, scene_.origin.at(name)});
   }
 
   void put() {
     if (added_.empty()) return;
-    std::vector<SceneLine>& lines = scene_.origin.lines;
-    const auto end = static_cast<std::ptrdiff_t>(lines.size());
-    std::ranges::sort(added_, {}, &SceneLine::part);
-    lines.insert(lines.end(), added_.begin(), added_.end());
-    std::ranges::inplace_merge(lines, lines.begin() + end, {}, &SceneLine::part);
+    std::vector<ScenePart>& parts = scene_.origin.parts;
+    const auto end = static_cast<std::ptrdiff_t>(parts.size());
+    std::ranges::sort(added_, {}, &ScenePart::name);
+    parts.insert(parts.end(), added_.begin(), added_.end());
+    std::ranges::inplace_merge(parts, parts.begin() + end, {}, &ScenePart::name);
     added_.clear();
   }
 
  private:
   Scene& scene_;
-  std::vector<SceneLine> added_;
+  std::vector<ScenePart> added_;
 };
 
 // The name of a file is one from the folder of the scene's file, and leads to `root` or below.
@@ -162,7 +162,7 @@ Result<void> settle_file(const Scene& scene, std::string& file, const std::strin
 
 // What a file would do beside the value itself.
 Result<void> settle(const NamedThings& things, const ValuePath& path, const Slot& slot,
-                    const std::string& root, NewLines& lines) {
+                    const std::string& root, NewParts& parts) {
   if (slot.attribute.syntax == Syntax::Path) {
     auto settled = settle_file(things.scene(), *std::get<std::string*>(slot.place), root);
     if (!settled) return settled;
@@ -170,19 +170,19 @@ Result<void> settle(const NamedThings& things, const ValuePath& path, const Slot
   if (slot.attribute.name == "falloff") {
     if (Force* const force = things.force(path.name)) force->falloff_curve.reset();
   }
-  lines.add(path.name == Description<Scene>::element ? "" : path.name, path.attribute);
+  parts.add(path.name == Description<Scene>::element ? "" : path.name, path.attribute);
   return {};
 }
 
 Result<void> make_change(const NamedThings& things, const SceneChange& change,
-                         const std::string& root, NewLines& lines) {
+                         const std::string& root, NewParts& parts) {
   const auto at = slot_at(things, change.path);
   if (!at) return refuse(at.error());
   const Adjust adjust(at->path, change);
   if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
     return std::visit(adjust, at->slot.place);
   if (auto read = adjust.read(at->slot); !read) return read;
-  return settle(things, at->path, at->slot, root, lines);
+  return settle(things, at->path, at->slot, root, parts);
 }
 
 // Adjusts a copy of the channel.
@@ -305,7 +305,7 @@ Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
                           const std::string& root) {
   Scene changed = scene;
   const NamedThings things(changed);
-  NewLines lines(changed);
+  NewParts parts(changed);
   ChangedValues values;
   for (const SceneChange& change : changes) {
     const auto complain = [&](const std::string& message) {
@@ -313,10 +313,10 @@ Result<void> make_changes(Scene& scene, std::span<const SceneChange> changes,
     };
     if (const auto other = values.add(change))
       return complain(fmt::format("{} changes the same value", changes[*other].told()));
-    if (const auto made = make_change(things, change, root, lines); !made)
+    if (const auto made = make_change(things, change, root, parts); !made)
       return complain(made.error().message);
   }
-  lines.put();
+  parts.put();
   scene = std::move(changed);
   return {};
 }

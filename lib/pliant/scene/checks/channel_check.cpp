@@ -150,7 +150,7 @@ class ChannelChecker {
                               : fmt::format("is {}, which is not finite", spelled<D>(value));
       if (complaint) {
         add_error(name, attribute, channel.is_animated(), frame, *complaint,
-                  scene_.origin.line_of(name, std::string(attribute)));
+                  scene_.origin.at(name, std::string(attribute)));
         return false;
       }
     }
@@ -168,7 +168,7 @@ class ChannelChecker {
       const auto checked = check_time_step(length, dt.at(frame)[0]);
       if (checked) continue;
       return add_error(surface.name, "dt", is_animated, frame, checked.error().message,
-                       scene_.origin.last_line_of(surface.name, {"dt", "timeScale"}));
+                       scene_.origin.last_of(surface.name, {"dt", "timeScale"}));
     }
   }
 
@@ -185,7 +185,7 @@ class ChannelChecker {
                   fmt::format("is {}, but must be greater than -2 sqrt(b d) = {} (b = {}, d = {}); "
                               "otherwise the plate has no stable shape",
                               stiffness.c, stiffness.least_c(), stiffness.b, stiffness.d),
-                  scene_.origin.last_line_of(surface.name, {"b", "c", "d"}));
+                  scene_.origin.last_of(surface.name, {"b", "c", "d"}));
         return false;
       }
     }
@@ -216,7 +216,7 @@ class ChannelChecker {
                                    "must be greater than 2 poisson sqrt(b d) = {}; a smaller "
                                    "poisson helps",
                                    ratio, where, stiffness.c, least_c),
-                       scene_.origin.last_line_of(surface.name, {"poisson", "b", "c", "d"}));
+                       scene_.origin.last_of(surface.name, {"poisson", "b", "c", "d"}));
     }
   }
 
@@ -232,11 +232,10 @@ class ChannelChecker {
     for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const bool is_static = density.at(frame)[0] == 0 && damping.at(frame)[0] == 0;
       if (!is_static || hardening.at(frame)[0] > 0) continue;
-      return add_error(
-          surface.name, "hardening", is_animated, frame,
-          "is 0, but must be greater than 0 where density and damping are 0: nothing "
-          "else says how far a static surface yields",
-          scene_.origin.last_line_of(surface.name, {"density", "damping", "hardening"}));
+      return add_error(surface.name, "hardening", is_animated, frame,
+                       "is 0, but must be greater than 0 where density and damping are 0: nothing "
+                       "else says how far a static surface yields",
+                       scene_.origin.last_of(surface.name, {"density", "damping", "hardening"}));
     }
   }
 
@@ -255,12 +254,12 @@ class ChannelChecker {
   }
 
   void add_error(const std::string& name, std::string_view attribute, bool is_animated, int frame,
-                 const std::string& complaint, int line) {
+                 const std::string& complaint, const TextPlace& place) {
     const std::string when = is_animated ? fmt::format(" at frame {}", frame) : "";
     errors_.push_back(scene_.origin.located(
         {.code = ErrorCode::InvalidInput,
          .message = fmt::format("{}.{}{} {}", name, attribute, when, complaint)},
-        line));
+        place));
   }
 
   static constexpr std::size_t parts_of_frame = 500;
@@ -304,7 +303,7 @@ Error not_held(const Scene& scene, const Surface& surface, const StaticFrame& at
            "{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
            "density or a damping{}",
            surface.name, when, what, is_grid ? ", or a clamped edge or two pinned ones" : "")},
-      scene.origin.last_line_of(surface.name, {"density", "damping", "edges", "border"}));
+      scene.origin.last_of(surface.name, {"density", "damping"}));
 }
 
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,

@@ -19,18 +19,14 @@ bool is_name(std::string_view text) {
          std::all_of(text.begin(), text.end(), is_later);
 }
 
-Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
-                      const std::string& attribute) {
-  return origin.located(
-      {.code = ErrorCode::Unreadable,
-       .message = fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message)},
-      origin.line_of(surface, attribute));
+std::string unreadable_mesh(const Error& error, const std::string& surface) {
+  return fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message);
 }
 
 std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop) {
   std::vector<xml::Named> named;
   const auto add = [&](std::string_view element, const std::string& name) {
-    named.push_back({element, name, scene.origin.line_of(name, "name")});
+    named.push_back({element, name, scene.origin.at(name, "name")});
   };
   for (const Surface& surface : scene.surfaces) add(Description<Surface>::element, surface.name);
   for (const Force& force : scene.forces) add(kind_of(force), force.name);

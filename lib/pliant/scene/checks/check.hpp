@@ -22,12 +22,10 @@ bool is_name(std::string_view text);
 /// over surfaces, forces and groups; targets and groups exist; a custom force has a function; a
 /// sheet has at most `max_sheet_vertices` vertices. The reader has done so for a scene from a file.
 /// `Simulation::make` checks the channels over the frames. Returns all problems, in the order of
-/// their lines if known; fewer if the caller wants it to stop.
+/// their lines; fewer if the caller wants it to stop.
 std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop = {});
 
-/// The error (Unreadable) of a reader of meshes or caches as a problem of the scene: it names the
-/// surface, and the line of the attribute by which the scene names the file.
-Error unreadable_mesh(const Error& error, const std::string& surface, const SceneOrigin& origin,
-                      const std::string& attribute = "file");
+/// What an error (Unreadable) of a reader of meshes or caches says about a surface.
+std::string unreadable_mesh(const Error& error, const std::string& surface);
 
 }  // namespace pliant

@@ -132,7 +132,7 @@ class WholeChecker {
     if (is_sound(surface.name, "columns") && is_sound(surface.name, "rows") &&
         vertices > max_sheet_vertices)
       findings_.add_problem(
-          scene_.origin.last_line_of(surface.name, {"columns", "rows"}),
+          scene_.origin.last_of(surface.name, {"columns", "rows"}),
           fmt::format("surface \"{}\" has {} x {} = {} vertices; at most {} are allowed",
                       surface.name, sheet->columns, sheet->rows, vertices, max_sheet_vertices));
   }
@@ -162,7 +162,7 @@ class WholeChecker {
     if (solver.region != SolvedRegion::All) {
       if (!solver.edges.are_clamped() || scene_.origin.gives(surface.name, "edges"))
         findings_.add_problem(
-            scene_.origin.last_line_of(surface.name, {"region", "edges"}),
+            scene_.origin.last_of(surface.name, {"region", "edges"}),
             fmt::format("{0}.edges: edges need region=\"all\", but "
                         "{0}.region is \"forces\": the edges of a force's region are clamped",
                         surface.name));
@@ -171,7 +171,7 @@ class WholeChecker {
     const auto refuse = [&](const char* attribute, std::string_view given,
                             std::string_view needed) {
       findings_.add_problem(
-          scene_.origin.last_line_of(surface.name, {"region", attribute}),
+          scene_.origin.last_of(surface.name, {"region", attribute}),
           fmt::format("{0}.{1}: region=\"all\" solves the whole surface as one region about its "
                       "rest shape, with {1}=\"{2}\", but {1} is \"{3}\"",
                       surface.name, attribute, needed, given));
@@ -200,7 +200,7 @@ class WholeChecker {
                            surface.name, in_quotes(surface.driven_by)));
     if (surface.solver.reference == Reference::None)
       findings_.add_problem(
-          scene_.origin.last_line_of(surface.name, {"cache", "reference"}),
+          scene_.origin.last_of(surface.name, {"cache", "reference"}),
           fmt::format("{}.reference: a cache moves the shape at rest, but reference=\"none\" has "
                       "none",
                       surface.name));
@@ -210,7 +210,7 @@ class WholeChecker {
     const auto& [preroll, loop] = std::tie(surface.solver.preroll, surface.solver.loop);
     if (preroll == 0 || !loop) return;
     findings_.add_problem(
-        scene_.origin.last_line_of(surface.name, {"preroll", "loop"}),
+        scene_.origin.last_of(surface.name, {"preroll", "loop"}),
         fmt::format("{0}.preroll is {1} and {0}.loop is {2}, but a cycle has no frame ahead of its "
                     "start; remove one of them",
                     surface.name, preroll, *loop));
@@ -225,7 +225,7 @@ class WholeChecker {
                           material.damping.at(0) != standard.at(0);
     if (!is_given) return;
     findings_.add_problem(
-        scene_.origin.last_line_of(surface.name, {"damping", "dampingRatio"}),
+        scene_.origin.last_of(surface.name, {"damping", "dampingRatio"}),
         fmt::format("{0}.damping and {0}.dampingRatio are both given, but the damping follows from "
                     "the ratio; remove one of them",
                     surface.name));
@@ -236,7 +236,7 @@ class WholeChecker {
     const SolverSettings& solver = surface.solver;
     const auto refuse = [&](const char* attribute, std::string_view given,
                             std::string_view reason) {
-      findings_.add_problem(scene_.origin.last_line_of(surface.name, {"yield", attribute}),
+      findings_.add_problem(scene_.origin.last_of(surface.name, {"yield", attribute}),
                             fmt::format("{0}.yield: {0}.{1} is \"{2}\", but {3}", surface.name,
                                         attribute, given, reason));
     };
@@ -280,7 +280,7 @@ class WholeChecker {
                                         in_quotes(map->attribute)));
       if (map->channel == MapChannel::Damping && surface.material.damping_ratio)
         findings_.add_problem(
-            scene_.origin.last_line_of(surface.name, {"dampingRatio", channel}),
+            scene_.origin.last_of(surface.name, {"dampingRatio", channel}),
             fmt::format(
                 "{0}: {1}.dampingRatio gives the damping by the density of each node; remove "
                 "one of them",
@@ -288,7 +288,7 @@ class WholeChecker {
       const bool is_plastic =
           map->channel == MapChannel::Yield || map->channel == MapChannel::Hardening;
       if (is_plastic && !surface.material.yield && is_sound(surface.name, "yield"))
-        findings_.add_note(scene_.origin.line_of(name, ""),
+        findings_.add_note(scene_.origin.at(name, ""),
                            fmt::format("{}: the map has no effect: {}.yield is not given, so that "
                                        "nothing yields",
                                        name, surface.name));
@@ -296,7 +296,7 @@ class WholeChecker {
           !is_plastic && map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
       if (is_stiffness && surface.solver.combine == Combine::Union)
         findings_.add_problem(
-            scene_.origin.last_line_of(surface.name, {"combine", channel}),
+            scene_.origin.last_of(surface.name, {"combine", channel}),
             fmt::format("{}: a map of b, c or d needs rectangles, but {}.combine is \"union\"; "
                         "\"box\" and \"islands\" have them",
                         name, surface.name));
@@ -370,23 +370,25 @@ class WholeChecker {
   }
 
   void check_names() {
-    std::map<std::string_view, int> first_lines;
-    for (const auto& [element, name, line] : named_) {
+    std::map<std::string_view, TextPlace> first_places;
+    for (const auto& [element, name, at] : named_) {
       if (findings_.is_over(parts_of_object)) return;
       if (!is_name(name)) {
-        findings_.add_problem(line, fmt::format("the name {} must be a letter or _ followed by "
-                                                "letters, digits, _ and -",
-                                                in_quotes(name)));
+        findings_.add_problem(at, fmt::format("the name {} must be a letter or _ followed by "
+                                              "letters, digits, _ and -",
+                                              in_quotes(name)));
         continue;
       }
-      const auto [first, is_new] = first_lines.emplace(name, line);
+      const auto [first, is_new] = first_places.emplace(name, at);
       if (is_new) continue;
       const std::string place =
-          first->second != 0 ? fmt::format(" at {}", findings_.title_of(first->second, line)) : "";
+          first->second.is_known()
+              ? fmt::format(" at {}", findings_.sources().title_of(first->second, at))
+              : "";
       findings_.add_problem(
-          line, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces and groups "
-                            "must have different names",
-                            element, in_quotes(name), place));
+          at, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces and groups "
+                          "must have different names",
+                          element, in_quotes(name), place));
     }
   }
 
@@ -437,7 +439,7 @@ class WholeChecker {
   }
 
   void complain(const std::string& name, std::string_view attribute, std::string message) {
-    findings_.add_problem(scene_.origin.line_of(name, std::string(attribute)), std::move(message));
+    findings_.add_problem(scene_.origin.at(name, std::string(attribute)), std::move(message));
   }
 
   const Scene& scene_;
@@ -466,7 +468,7 @@ void note_idle_targets(const Scene& scene, Findings& findings) {
     for (const std::string& target : force.targets)
       if (!findings.is_over(parts_of_target) && !group->second.contains(target))
         findings.add_note(
-            scene.origin.line_of(force.name, "targets"),
+            scene.origin.at(force.name, "targets"),
             fmt::format(
                 "{}.targets: {} is not a target of the group {}: the force has no effect there",
                 force.name, in_quotes(target), in_quotes(force.group)));

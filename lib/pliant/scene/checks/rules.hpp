@@ -14,7 +14,7 @@ namespace pliant::xml {
 struct Named {
   std::string_view element;
   std::string name;
-  int line = 0;
+  TextPlace place;
 };
 
 /// Checks a scene except for its channels: values within their ranges; the rules between values;

@@ -123,17 +123,9 @@ void read_animate(const Element& animate, std::span<Slot* const> rows, const std
   if (found != rows.end()) {
     Slot& row = **found;
     place = row.place;
-    if (row.line != 0)
-      findings.add_problem(animate.line(),
-                           value_problem(animate, "attribute", name,
-                                         fmt::format("is already {} ({}); remove one of them",
-                                                     row.is_animated ? "animated" : "given",
-                                                     findings.title_of(row.line, animate.line()))));
-    else
-      row.line = animate.line();
-    row.is_animated = true;
-  } else if (given && !is_unknown(*given)) {
-    findings.add_problem(given->line, no_channel(animate, rows, name));
+    take_over(animate, *given, row, findings);
+  } else if (given && !given->is_unknown) {
+    findings.add_problem(given->value_place(), no_channel(animate, rows, name));
   }
   std::visit(CurveOfChannel{animate, owner + '.' + name, findings}, place);
   if (found != rows.end() && findings.problem_count() != problems) (*found)->is_sound = false;

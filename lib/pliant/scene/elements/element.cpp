@@ -59,26 +59,26 @@ bool is_include(const Element& element) {
 
 void read_value(const Element& element, const GivenAttribute& given, Slot& row,
                 Findings& findings) {
-  if (row.line != 0)
+  const TextPlace place = given.value_place();
+  if (row.at.is_known())
     return findings.add_problem(
-        given.line,
-        value_problem(element, given.name, given.value,
-                      fmt::format("{} is already animated ({}); remove one of them", given.name,
-                                  findings.title_of(row.line, given.line))));
-  row.line = given.line;
-  if (is_unknown(given)) {
+        place, value_problem(element, given.name, given.value,
+                             fmt::format("{} is already animated ({}); remove one of them",
+                                         given.name, findings.sources().title_of(row.at, place))));
+  row.at = place;
+  if (given.is_unknown) {
     row.is_sound = false;
     return findings.add_consequence();
   }
   if (row.attribute.need == Need::Later) {
     row.is_sound = false;
-    return findings.add_problem(
-        row.line, fmt::format("the attribute {} of {} {}", in_quotes(given.name), tag(element),
-                              not_supported(row.attribute.instead)));
+    return findings.add_problem(given.name_place(),
+                                fmt::format("the attribute {} of {} {}", in_quotes(given.name),
+                                            tag(element), not_supported(row.attribute.instead)));
   }
   if (const Reading<void> read = row.read(given.value); !read) {
     row.is_sound = false;
-    findings.add_problem(row.line, value_problem(element, given.name, given.value, read.error()));
+    findings.add_problem(place, value_problem(element, given.name, given.value, read.error()));
   }
 }
 
@@ -103,16 +103,17 @@ void read_attributes(const Element& element, Table& table, Findings& findings) {
       continue;
     }
     findings.add_problem(
-        given.line, fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given.name),
-                                attribute_hint(element.name(), given.name, names, meant)));
+        given.name_place(),
+        fmt::format("{} has no attribute {}{}", tag(element), in_quotes(given.name),
+                    attribute_hint(element.name(), given.name, names, meant)));
   }
   for (Slot& row : table) {
     if (std::find(meant.begin(), meant.end(), row.attribute.name) != meant.end())
       row.is_sound = false;
-    if (row.attribute.need != Need::Required || row.line != 0 || !row.is_sound) continue;
+    if (row.attribute.need != Need::Required || row.at.is_known() || !row.is_sound) continue;
     row.is_sound = false;
-    findings.add_problem(element.line(), fmt::format("{} needs the attribute \"{}\"", tag(element),
-                                                     row.attribute.name));
+    findings.add_problem(element.place(), fmt::format("{} needs the attribute \"{}\"", tag(element),
+                                                      row.attribute.name));
   }
 }
 
@@ -124,9 +125,9 @@ bool read_children(const Element& element, std::span<const ChildReader> children
   for (auto part = content.next(); part; part = content.next()) {
     if (findings.is_over(parts_of_child)) break;
     if (!part->element) {
-      findings.add_problem(content.line_of(part->text),
-                           fmt::format("{} contains the text {}; no text is allowed here",
-                                       tag(element), in_quotes(trimmed(part->value()))));
+      findings.add_problem(
+          part->place, fmt::format("{} contains the text {}; no text is allowed here", tag(element),
+                                   in_quotes(trimmed(part->value()))));
       continue;
     }
     const Element& child = *part->element;
@@ -141,7 +142,7 @@ bool read_children(const Element& element, std::span<const ChildReader> children
     if (is_include(child))
       findings.add_consequence();
     else
-      findings.add_problem(child.line(), unknown_child(element, child, children));
+      findings.add_problem(child.place(), unknown_child(element, child, children));
   }
   return all_known;
 }
@@ -150,36 +151,35 @@ bool read_numbers(const Element& element, std::vector<double>& numbers, Findings
   constexpr std::size_t longest_number = 1024;  // bytes
   constexpr std::size_t parts_of_number = 32;
   bool is_sound = true;
-  const auto complain = [&](int line, std::string message) {
+  const auto complain = [&](const TextPlace& place, std::string message) {
     is_sound = false;
-    findings.add_problem(line, std::move(message));
+    findings.add_problem(place, std::move(message));
   };
   ContentReader content(element, findings);
-  // Whether it is a number; `written`: in the text.
-  const auto read = [&](std::string_view word, std::string_view written) {
+  // Whether it is a number; `written`: in the text at a place.
+  const auto read = [&](std::string_view word, std::string_view written, const TextPlace& place) {
     const Reading<double> number = written.size() < longest_number
                                        ? parse_number(word)
                                        : tl::unexpected(std::string("is too long for a number"));
     if (number)
       numbers.push_back(*number);
     else
-      complain(content.line_of(written),
-               fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
-                           in_quotes(word), number.error()));
+      complain(place, fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
+                                  in_quotes(word), number.error()));
     return number.has_value();
   };
   for (auto part = content.next(); part; part = content.next()) {
     if (part->element && is_include(*part->element))
       is_sound = false;
     else if (part->element)
-      complain(part->element->line(), unknown_child(element, *part->element, {}));
+      complain(part->element->place(), unknown_child(element, *part->element, {}));
     for (std::string_view text = part->text; !text.empty();) {
       const std::string_view ahead = text.substr(0, longest_number);
       const std::string_view word = ahead.substr(0, ahead.find_first_of(blanks));
       const bool has_reference = !part->is_cdata && word.find('&') != std::string_view::npos;
       const std::string value = has_reference ? decoded(word) : "";
       for (const std::string_view inner : has_reference ? words_of(value) : std::vector{word})
-        if (!read(inner, word)) return false;
+        if (!read(inner, word, part->place_of(word))) return false;
       text.remove_prefix(first_not_blank(text, word.size(), findings));
       if (findings.is_over(parts_of_number)) return false;
     }
@@ -192,29 +192,40 @@ std::string tag(const Element& element) {
   return '<' + name.substr(1, name.size() - 2) + '>';
 }
 
-bool is_unknown(const GivenAttribute& given) { return given.value.starts_with(unknown_value); }
-
 std::string value_problem(const Element& element, std::string_view attribute, std::string_view text,
                           std::string_view complaint) {
   return fmt::format("{} {}={}: {}", tag(element), attribute, in_quotes(text), complaint);
 }
 
-void locate_file(const Element& element, Slot& row, const std::string& surface,
-                 const std::string& named_by, std::string& path, SceneFile& file) {
-  if (row.line == 0 || !row.is_sound) return;
-  const std::string written = std::exchange(path, (file.folder_at(row.line) / path).string());
+void take_over(const Element& element, const GivenAttribute& given, Slot& row, Findings& findings) {
+  const TextPlace place = given.value_place();
+  if (row.at.is_known())
+    findings.add_problem(place,
+                         value_problem(element, given.name, trimmed(given.value),
+                                       fmt::format("is already {} ({}); remove one of them",
+                                                   row.is_animated ? "animated" : "given",
+                                                   findings.sources().title_of(row.at, place))));
+  else
+    row.at = place;
+  row.is_animated = true;
+}
+
+void locate_file(const Element& element, Slot& row, const std::string& surface, std::string& path,
+                 SceneFile& file) {
+  if (!row.at.is_known() || !row.is_sound) return;
+  const std::string written = std::exchange(path, (file.folder_of(row.at.text) / path).string());
   if (const auto below = find_below(path, file.root); !below) {
     row.is_sound = false;
     return file.findings.add_problem(
-        row.line, value_problem(element, row.attribute.name, written, below.error().message));
+        row.at, value_problem(element, row.attribute.name, written, below.error().message));
   }
-  file.meshes.push_back({surface, path, row.line, named_by});
+  file.meshes.push_back({surface, path, row.at});
 }
 
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file) {
   for (const Slot& row : table) {
     const std::string path = fmt::format("{}.{}", name, row.attribute.name);
-    if (row.line != 0) file.lines[path] = row.line;
+    if (row.at.is_known()) file.parts[path] = row.at;
     if (!row.is_sound) file.unsound.insert(path);
   }
 }

@@ -29,26 +29,27 @@ bool read_children(const Element& element, std::span<const ChildReader> children
                    Findings& findings);
 
 /// Reads the text of an element, numbers between blanks, into `numbers`. Problems: an element in
-/// it, what is not a number, each with its line. Returns whether there was none.
+/// it, what is not a number. Returns whether there was none.
 bool read_numbers(const Element& element, std::vector<double>& numbers, Findings& findings);
 
 /// `<grid>`.
 std::string tag(const Element& element);
 
-/// Whether the value could not be made of definitions, which is reported.
-bool is_unknown(const GivenAttribute& given);
-
 /// `<grid> width="1,5": not a number`.
 std::string value_problem(const Element& element, std::string_view attribute, std::string_view text,
                           std::string_view complaint);
 
+/// The element animates the attribute that it names in `given`. Problem: a file gives or animates
+/// it already.
+void take_over(const Element& element, const GivenAttribute& given, Slot& row, Findings& findings);
+
 /// Finds the file that an attribute names, relative to the folder of the file that the attribute
 /// stands in, and adds it to the scene's meshes; does nothing without a sound attribute. Problem:
-/// it is outside the scene's root. `named_by`: see `NamedMesh`.
-void locate_file(const Element& element, Slot& row, const std::string& surface,
-                 const std::string& named_by, std::string& path, SceneFile& file);
+/// it is outside the scene's root.
+void locate_file(const Element& element, Slot& row, const std::string& surface, std::string& path,
+                 SceneFile& file);
 
-/// Records the lines of the attributes of a table, and which attributes have problems.
+/// Records the places of the attributes of a table, and which attributes have problems.
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file);
 
 }  // namespace pliant::xml

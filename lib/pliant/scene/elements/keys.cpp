@@ -11,7 +11,7 @@ namespace {
 
 bool is_given(Table& table, std::string_view name) {
   const Slot* row = find(table, name);
-  return row != nullptr && row->line != 0;
+  return row != nullptr && row->at.is_known();
 }
 
 bool is_sound(Table& table, std::string_view name) {
@@ -53,12 +53,12 @@ class CurveReader {
 
   AnimateText<D> defaults_;
   CurveKeys<D> curve_;
-  std::vector<int> key_lines_;
+  std::vector<TextPlace> key_places_;
   bool has_too_many_ = false;
-  int loop_line_ = 0;
-  int uncontrolled_line_ = 0;       // of the last key if it inherits cubicBezier and has no control
+  TextPlace loop_place_;
+  TextPlace uncontrolled_;          // the last key if it inherits cubicBezier and has no control
   std::optional<double> previous_;  // frame of the key before, if it was readable
-  int previous_line_ = 0;
+  TextPlace previous_place_;
 
   // The current key. Its table refers to it, and both are reused for every key.
   KeyText<D> key_;
@@ -79,7 +79,7 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   if (findings_.is_over(0)) return std::nullopt;
   if (curve_.keys.empty() && all_known)
     findings_.add_problem(
-        animate_.line(),
+        animate_.place(),
         fmt::format("{} has no keys: at least one <key> is required", tag(animate_)));
   check_last_control(curve_.loop.has_value());
   if (findings_.problem_count() == problems_before) check_loop();
@@ -87,21 +87,21 @@ std::optional<Curve<D>> CurveReader<D>::read() {
 
   tl::expected<Curve<D>, CurveError> curve =
       Curve<D>::make(std::move(curve_), findings_.should_stop());
-  const auto line_of = [&](std::size_t key) {
-    return key < key_lines_.size() ? key_lines_[key] : animate_.line();
+  const auto place_of = [&](std::size_t key) {
+    return key < key_places_.size() ? key_places_[key] : animate_.place();
   };
   if (!curve && curve.error().is_interruption) {
     findings_.stop();
     return std::nullopt;
   }
   if (!curve) {
-    findings_.add_problem(line_of(curve.error().key),
+    findings_.add_problem(place_of(curve.error().key),
                           fmt::format("{}: {}", channel_, curve.error().message));
     return std::nullopt;
   }
   for (const CurveNote& note : curve->notes())
     findings_.add_note(
-        line_of(note.key),
+        place_of(note.key),
         fmt::format("{}: key {}: {}", channel_, curve->keys().keys[note.key].frame, note.message));
   return std::move(*curve);
 }
@@ -122,13 +122,13 @@ void CurveReader<D>::read_key(const Element& element) {
   constexpr std::size_t most_keys = 1'000'000;
   if (curve_.keys.size() >= most_keys) {
     if (std::exchange(has_too_many_, true)) return;
-    return findings_.add_problem(element.line(),
+    return findings_.add_problem(element.place(),
                                  fmt::format("{} has more than {} keys", tag(animate_), most_keys));
   }
   check_last_control(true);
   key_ = {};
   for (Slot& row : key_table_) {
-    row.line = 0;
+    row.at = {};
     row.is_sound = true;
   }
   read_attributes(element, key_table_, findings_);
@@ -141,7 +141,7 @@ void CurveReader<D>::read_key(const Element& element) {
   key.in = side_of(element, true);
   key.out = side_of(element, false);
   curve_.keys.push_back(std::move(key));
-  key_lines_.push_back(element.line());
+  key_places_.push_back(element.place());
 }
 
 template <int D>
@@ -151,19 +151,17 @@ void CurveReader<D>::check_frame(const Element& element) {
     previous_.reset();
     return;
   }
+  const TextPlace place = element.attribute(name)->whole_place();
+  const auto title = [&] { return findings_.sources().title_of(previous_place_, place); };
   if (previous_ && key_.frame == *previous_)
-    findings_.add_problem(
-        element.line(),
-        fmt::format("{} {} {} repeats the key of {}", tag(element), name, key_.frame,
-                    findings_.title_of(previous_line_, element.line())));
+    findings_.add_problem(place, fmt::format("{} {} {} repeats the key of {}", tag(element), name,
+                                             key_.frame, title()));
   else if (previous_ && key_.frame < *previous_)
     findings_.add_problem(
-        element.line(),
-        fmt::format("{} {} {} is not after {} {} of {}: keys must be in increasing order",
-                    tag(element), name, key_.frame, name, *previous_,
-                    findings_.title_of(previous_line_, element.line())));
+        place, fmt::format("{} {} {} is not after {} {} of {}: keys must be in increasing order",
+                           tag(element), name, key_.frame, name, *previous_, title()));
   previous_ = key_.frame;
-  previous_line_ = element.line();
+  previous_place_ = place;
 }
 
 /// A boolean channel steps: attributes that shape the motion between two values are a problem.
@@ -176,14 +174,14 @@ void CurveReader<D>::check_stepping(const Element& element, Table& table,
       "control", "amplitude", "period", "back",     "overshoot", "offset"};
   for (const std::string_view name : shaping)
     if (is_given(table, name))
-      findings_.add_problem(find(table, name)->line,
+      findings_.add_problem(find(table, name)->at,
                             fmt::format("{} {}: a boolean channel steps, so {} is not allowed",
                                         tag(element), name, name));
   const bool is_step = interpolation.kind == Interpolation::Kind::Step ||
                        interpolation.kind == Interpolation::Kind::StepNext;
   if (!is_step && is_given(table, "interpolation"))
     findings_.add_problem(
-        find(table, "interpolation")->line,
+        find(table, "interpolation")->at,
         fmt::format("{} interpolation: a boolean channel steps; allowed: step, stepNext",
                     tag(element)));
 }
@@ -202,7 +200,7 @@ Interpolation CurveReader<D>::interpolation_of(const Element& element) {
   const auto require = [&](std::string_view name, bool applies, std::string_view what) {
     if (is_given(key_table_, name) && !applies)
       findings_.add_problem(
-          find(key_table_, name)->line,
+          find(key_table_, name)->at,
           fmt::format("{} {} applies only to the interpolation {}", tag(element), name, what));
   };
   const bool is_elastic = is_easing && next.ease == Ease::Elastic;
@@ -215,11 +213,11 @@ Interpolation CurveReader<D>::interpolation_of(const Element& element) {
   if (is_cubic && !key_.control && is_sound(key_table_, "control")) {
     if (key_.interpolation)
       findings_.add_problem(
-          element.line(),
+          element.place(),
           fmt::format("{} interpolation=\"cubicBezier\" needs control=\"x1 y1 x2 y2\"",
                       tag(element)));
     else
-      uncontrolled_line_ = element.line();
+      uncontrolled_ = element.place();
   }
   return next;
 }
@@ -228,11 +226,11 @@ Interpolation CurveReader<D>::interpolation_of(const Element& element) {
 /// last key, unless an inner loop copies it.
 template <int D>
 void CurveReader<D>::check_last_control(bool has_segment) {
-  if (uncontrolled_line_ != 0 && has_segment)
+  if (uncontrolled_.is_known() && has_segment)
     findings_.add_problem(
-        uncontrolled_line_,
+        uncontrolled_,
         "<key> inherits interpolation=\"cubicBezier\" and needs control=\"x1 y1 x2 y2\"");
-  uncontrolled_line_ = 0;
+  uncontrolled_ = {};
 }
 
 /// One side of the key: its own tangent, otherwise that for both sides, otherwise the default.
@@ -244,7 +242,7 @@ Tangent<D> CurveReader<D>::side_of(const Element& element, bool is_in) {
   const auto exclude = [&](std::string_view first, std::string_view second) {
     if (is_given(key_table_, first) && is_given(key_table_, second))
       findings_.add_problem(
-          find(key_table_, second)->line,
+          find(key_table_, second)->at,
           fmt::format("{} has both {} and {}; remove one of them", tag(element), first, second));
   };
   exclude("tangent", name);
@@ -270,11 +268,11 @@ void CurveReader<D>::read_loop(const Element& element) {
   read_children(element, {}, findings_);
   if (curve_.loop)
     return findings_.add_problem(
-        element.line(), fmt::format("{} has a second <loop>; the first is at {}", tag(animate_),
-                                    findings_.title_of(loop_line_, element.line())));
+        element.place(), fmt::format("{} has a second <loop>; the first is at {}", tag(animate_),
+                                     findings_.sources().title_of(loop_place_, element.place())));
   check_stepping(element, table, {});
   curve_.loop = loop;
-  loop_line_ = element.line();
+  loop_place_ = element.place();
 }
 
 /// Checks the curve's rules for a loop again, to report problems at the loop's line instead of a
@@ -285,27 +283,28 @@ void CurveReader<D>::check_loop() {
   const Loop<D>& loop = *curve_.loop;
   if (!(loop.to > loop.from))
     return findings_.add_problem(
-        loop_line_, fmt::format("<loop> to=\"{}\": must be after from=\"{}\"", loop.to, loop.from));
+        loop_place_,
+        fmt::format("<loop> to=\"{}\": must be after from=\"{}\"", loop.to, loop.from));
   const auto at = [](const Key<D>& key, double frame) { return key.frame < frame; };
   const auto first = std::lower_bound(curve_.keys.begin(), curve_.keys.end(), loop.from, at);
   if (first == curve_.keys.end() || first->frame != loop.from)
     return findings_.add_problem(
-        loop_line_, fmt::format("<loop> from=\"{}\": there is no key at that frame", loop.from));
+        loop_place_, fmt::format("<loop> from=\"{}\": there is no key at that frame", loop.from));
   const auto last = std::lower_bound(first, curve_.keys.end(), loop.to, at);
   const std::int64_t copied = (last - first) * (std::int64_t{loop.before} + loop.after);
   constexpr std::int64_t most = Findings::most_copied_keys;
   if (copied > most)
     return findings_.add_problem(
-        loop_line_,
+        loop_place_,
         fmt::format("<loop> makes {} copied keys; at most {} are allowed", copied, most));
   const std::int64_t before = findings_.copied_keys();
   findings_.count_copied_keys(copied);
   if (before > most && copied > 0) return findings_.add_consequence();
   if (before + copied > most && copied > 0)
     findings_.add_problem(
-        loop_line_, fmt::format("<loop> makes {} copied keys, and those before it {}; at most {} "
-                                "are allowed in a scene",
-                                copied, before, most));
+        loop_place_, fmt::format("<loop> makes {} copied keys, and those before it {}; at most {} "
+                                 "are allowed in a scene",
+                                 copied, before, most));
 }
 
 }  // namespace

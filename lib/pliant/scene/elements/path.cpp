@@ -19,7 +19,7 @@ bool is_position(const Slot& row) { return std::holds_alternative<PositionChanne
 /// is a problem.
 Slot* find_position(const Element& element, std::span<Slot> rows, Findings& findings) {
   const std::optional<GivenAttribute> given = element.attribute("attribute");
-  if (!given || is_unknown(*given)) return nullptr;  // reported with the other attributes
+  if (!given || given->is_unknown) return nullptr;  // reported with the other attributes
   const std::string name(trimmed(given->value));
   Slot* row = find(rows, name);
   if (!row || !is_position(*row)) {
@@ -28,7 +28,7 @@ Slot* find_position(const Element& element, std::span<Slot> rows, Findings& find
       if (is_position(candidate)) positions.push_back(candidate.attribute.name);
     const std::string parent = tag(element.parent());
     findings.add_problem(
-        given->line,
+        given->value_place(),
         value_problem(
             element, "attribute", name,
             row ? fmt::format("is not a position; the positions of {} are: {}", parent,
@@ -36,15 +36,7 @@ Slot* find_position(const Element& element, std::span<Slot> rows, Findings& find
                 : fmt::format("{} has no such position{}", parent, hint(name, positions))));
     return nullptr;
   }
-  if (row->line != 0)
-    findings.add_problem(element.line(),
-                         value_problem(element, "attribute", name,
-                                       fmt::format("is already {} ({}); remove one of them",
-                                                   row->is_animated ? "animated" : "given",
-                                                   findings.title_of(row->line, element.line()))));
-  else
-    row->line = element.line();
-  row->is_animated = true;
+  take_over(element, *given, *row, findings);
   return row;
 }
 
@@ -59,11 +51,11 @@ std::optional<Path> make_path(const Element& element, const PathText& text, Find
   for (; child; child = child->next())
     if (child->name() == Description<Waypoint>::element && waypoint++ == error.waypoint) break;
   if (child)
-    findings.add_problem(child->line(),
+    findings.add_problem(child->place(),
                          fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
   else
-    findings.add_problem(element.line(), fmt::format("{} has {} waypoints; {}", tag(element),
-                                                     error.waypoint, error.message));
+    findings.add_problem(element.place(), fmt::format("{} has {} waypoints; {}", tag(element),
+                                                      error.waypoint, error.message));
   return std::nullopt;
 }
 

@@ -25,8 +25,8 @@ class ContentsReader {
   void read_own_attributes();
   void locate_files();
   void read_rest();
-  /// Where its own line is recorded, besides those of its attributes.
-  void name_line(std::string path) { path_ = std::move(path); }
+  /// Where its own place is recorded, besides those of its attributes.
+  void name_place(std::string path) { path_ = std::move(path); }
   /// The value of the attribute in which it differs from others; null: it is not sound.
   std::optional<std::string> key(std::string_view attribute) const;
   /// Its own path cannot be relied on.
@@ -44,6 +44,10 @@ class ContentsReader {
   void refuse_parts_of_driven();
   void require_children(bool all_known);
   std::string title() const;  ///< `<surface> "sheet"`
+  /// `line 5`, for a message about an element.
+  std::string title_of(const TextPlace& place, const Element& from) const {
+    return findings_.sources().title_of(place, from.place());
+  }
   /// Of an element in it.
   std::string path_of(std::string_view element) const {
     return owner_.empty() ? "" : fmt::format("{}.{}", owner_, element);
@@ -56,9 +60,8 @@ class ContentsReader {
   Findings& findings_;
   std::string path_;
   std::string name_;
-  int falloff_line_ = 0;
-  std::map<std::pair<std::string_view, std::string>, int>
-      unique_;  // lines of elements by their key
+  TextPlace falloff_;
+  std::map<std::pair<std::string_view, std::string>, TextPlace> unique_;  // by their key
 };
 
 std::string ContentsReader::title() const {
@@ -89,7 +92,7 @@ void ContentsReader::read_rest() {
   refuse_excluded();
   refuse_parts_of_driven();
   if (owner_.empty() && !element_.is_root()) return;
-  if (!path_.empty() || element_.is_root()) file_.lines[path_] = element_.line();
+  if (!path_.empty() || element_.is_root()) file_.parts[path_] = element_.place();
   record(owner_, contents_.attributes, file_);
   // An <animate> in it may have given attributes of its parts.
   for (const ChildPlace& place : contents_.children)
@@ -122,14 +125,14 @@ std::vector<ChildReader> ContentsReader::child_readers() {
 }
 
 void ContentsReader::read_child(const Element& child, ChildPlace& place) {
-  if (place.row.most == 1 && place.line != 0) {
+  if (place.row.most == 1 && place.first.is_known()) {
     const std::string what =
         place.row.noun.empty() ? "a second " + tag(child) : fmt::format("two {}s", place.row.noun);
-    return findings_.add_problem(child.line(),
-                                 fmt::format("{} has {}; the first is at {}", title(), what,
-                                             findings_.title_of(place.line, child.line())));
+    return findings_.add_problem(
+        child.place(),
+        fmt::format("{} has {}; the first is at {}", title(), what, title_of(place.first, child)));
   }
-  if (place.line == 0) place.line = child.line();
+  if (!place.first.is_known()) place.first = child.place();
   if (!place.row.unique_by.empty()) return read_unique(child, place);
   if (place.part) return read_contents(child, *place.part, owner_, file_);
   Contents contents = place.kinds.add(child.name());
@@ -152,17 +155,16 @@ void ContentsReader::read_unique(const Element& child, ChildPlace& place) {
       doubt(fmt::format("{}.{}", path, word));
     return;
   }
-  const auto [first, is_new] = unique_.emplace(std::pair{child.name(), *key}, child.line());
+  const auto [first, is_new] = unique_.emplace(std::pair{child.name(), *key}, child.place());
   if (!is_new) {
     place.kinds.drop();
     return findings_.add_problem(
-        child.line(),
-        fmt::format("{} has a second {} of {}; the first is at {}", title(), tag(child), *key,
-                    findings_.title_of(first->second, child.line())));
+        child.place(), fmt::format("{} has a second {} of {}; the first is at {}", title(),
+                                   tag(child), *key, title_of(first->second, child)));
   }
   if (!path.empty()) {
     reader.owner_ = fmt::format("{}.{}", path, *key);
-    reader.name_line(reader.owner_);
+    reader.name_place(reader.owner_);
   }
   reader.locate_files();
   reader.read_rest();
@@ -170,49 +172,45 @@ void ContentsReader::read_unique(const Element& child, ChildPlace& place) {
 
 /// A <falloff> stands in place of the attribute of that name.
 void ContentsReader::read_falloff(const Element& child) {
-  const int line = child.line();
+  const TextPlace place = child.place();
   const Slot& attribute = *find(contents_.attributes, child.name());
-  if (falloff_line_ != 0)
-    findings_.add_problem(line, fmt::format("{} has a second {}; the first is at {}", tag(element_),
-                                            tag(child), findings_.title_of(falloff_line_, line)));
-  else if (attribute.line != 0)
+  if (falloff_.is_known())
+    findings_.add_problem(place, fmt::format("{} has a second {}; the first is at {}",
+                                             tag(element_), tag(child), title_of(falloff_, child)));
+  else if (attribute.at.is_known())
     findings_.add_problem(
-        line,
-        fmt::format("{} has both a {} and the attribute {} ({}); remove one of them", tag(element_),
-                    tag(child), child.name(), findings_.title_of(attribute.line, line)));
-  if (falloff_line_ == 0) falloff_line_ = line;
+        place, fmt::format("{} has both a {} and the attribute {} ({}); remove one of them",
+                           tag(element_), tag(child), child.name(), title_of(attribute.at, child)));
+  if (!falloff_.is_known()) falloff_ = place;
   *contents_.falloff = read_curve<1>(child, KeyAxis::Falloff, ValueKind::Number,
                                      fmt::format("{}.{}", owner_, child.name()), findings_);
 }
 
 void ContentsReader::read_text() {
-  if (path_.empty()) name_line(path_of(element_.name()));
+  if (path_.empty()) name_place(path_of(element_.name()));
   std::vector<double> numbers;
   if (!read_numbers(element_, numbers, findings_)) return doubt(path_);
   const Reading<void> taken = numbers.empty() ? tl::unexpected(std::string("has no numbers"))
                                               : contents_.take_numbers(std::move(numbers));
   if (taken) return;
   doubt(path_);
-  findings_.add_problem(element_.line(), fmt::format("{} {}", tag(element_), taken.error()));
+  findings_.add_problem(element_.place(), fmt::format("{} {}", tag(element_), taken.error()));
 }
 
 void ContentsReader::locate_files() {
-  const std::size_t point = std::min(owner_.find('.'), owner_.size());
   for (Slot& slot : contents_.attributes) {
     auto* const* const file = std::get_if<std::string*>(&slot.place);
     if (slot.attribute.syntax != Syntax::Path || !file) continue;
-    const std::string named_by =
-        point < owner_.size() ? owner_.substr(point + 1) : std::string(slot.attribute.name);
-    locate_file(element_, slot, owner_.substr(0, point), named_by, **file, file_);
+    locate_file(element_, slot, owner_.substr(0, owner_.find('.')), **file, file_);
   }
 }
 
 void ContentsReader::refuse_excluded() {
   for (Slot& slot : contents_.attributes) {
-    if (slot.excluded.empty() || slot.line == 0) continue;
+    if (slot.excluded.empty() || !slot.at.is_known()) continue;
     slot.is_sound = false;
     findings_.add_problem(
-        slot.line, fmt::format("{} {}: {}", tag(element_), slot.attribute.name, slot.excluded));
+        slot.at, fmt::format("{} {}: {}", tag(element_), slot.attribute.name, slot.excluded));
   }
 }
 
@@ -221,22 +219,23 @@ void ContentsReader::refuse_parts_of_driven() {
   if (!contents_.driver || contents_.driver->empty()) return;
   const std::string driver = in_quotes(*contents_.driver);
   for (const ChildPlace& place : contents_.children) {
-    if (place.line == 0 || place.row.is_of_driven) continue;
+    if (!place.first.is_known() || place.row.is_of_driven) continue;
     findings_.add_problem(
-        place.line, fmt::format("{} is driven by {} and has no <{}>; that of {} counts", title(),
-                                driver, place.kinds.names.front(), driver));
+        place.first, fmt::format("{} is driven by {} and has no <{}>; that of {} counts", title(),
+                                 driver, place.kinds.names.front(), driver));
   }
 }
 
 /// `all_known`: no unknown element may be one that is misspelt.
 void ContentsReader::require_children(bool all_known) {
   for (const ChildPlace& place : contents_.children) {
-    if (place.row.least == 0 || place.row.most > 1 || place.line != 0) continue;
+    if (place.row.least == 0 || place.row.most > 1 || place.first.is_known()) continue;
     doubt(path_of(place.kinds.names.front()));
     if (!all_known) continue;
     if (place.row.noun.empty()) {
-      findings_.add_problem(element_.line(), fmt::format("{} needs the element <{}>", tag(element_),
-                                                         place.kinds.names.front()));
+      findings_.add_problem(
+          element_.place(),
+          fmt::format("{} needs the element <{}>", tag(element_), place.kinds.names.front()));
       continue;
     }
     std::string kinds;
@@ -244,8 +243,8 @@ void ContentsReader::require_children(bool all_known) {
       if (!kinds.empty()) kinds += name == place.kinds.names.back() ? " or " : ", ";
       kinds += fmt::format("<{}>", name);
     }
-    findings_.add_problem(element_.line(), fmt::format("{} has no {}: one {} is required", title(),
-                                                       place.row.noun, kinds));
+    findings_.add_problem(element_.place(), fmt::format("{} has no {}: one {} is required", title(),
+                                                        place.row.noun, kinds));
   }
 }
 

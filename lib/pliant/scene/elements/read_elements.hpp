@@ -14,7 +14,7 @@
 namespace pliant::xml {
 
 /// Reads an element with all that stands in it. `owner` is the path of the thing around it, `sheet`
-/// or `sheet.map.b`, under which its lines are recorded; empty: it has no name.
+/// or `sheet.map.b`, under which its places are recorded; empty: it has no name.
 void read_contents(const Element& element, Contents& contents, const std::string& owner,
                    SceneFile& file);
 

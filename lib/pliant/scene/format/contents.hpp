@@ -33,7 +33,7 @@ struct ChildPlace {
   Child row;
   Kinds kinds;
   std::shared_ptr<Contents> part = {};  ///< of a thing that is always there; null: it may be absent
-  int line = 0;                         ///< of the first such element of a file; 0: none
+  TextPlace first = {};                 ///< the first such element of a file; unknown: none
 };
 
 /// What an element of a file says, with the places where a thing stores it.

@@ -66,7 +66,7 @@ struct Slot {
   std::function<Reading<void>(std::string_view)> read;  ///< stores the value, or complains
   Place place = {};
 
-  int line = 0;                    ///< line where it is given or animated, 0: absent
+  TextPlace at = {};               ///< where a file gives or animates it; unknown: it does not
   bool is_animated = false;        ///< by an <animate>, not given as an attribute
   bool is_sound = true;            ///< no problem was found with it
   std::string_view excluded = {};  ///< why it must not be given here; empty: it may be

@@ -11,6 +11,7 @@
 #include <tl/expected.hpp>
 
 #include "pliant/scene/text/arithmetic.hpp"
+#include "pliant/scene/text/text_place.hpp"
 
 namespace pliant::xml {
 
@@ -24,8 +25,9 @@ struct Definition {
   std::optional<Numbers> numbers = {};  ///< that it stands for; null: none
   bool is_plain = false;                ///< a number, or several between blanks
   bool is_sound = false;                ///< false: a problem with it has been reported
-  int line = 0;                         ///< of the <define> in its file
-  /// Of its value, in `DefinedValues`: where the value is from, and then those that it was made of.
+  TextPlace place = {};                 ///< of the <define>
+  /// Of its value, in the map of sources: where the value is from, and then those that it was made
+  /// of.
   std::vector<std::uint32_t> sources = {};
   mutable bool is_used = false;
 

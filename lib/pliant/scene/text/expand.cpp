@@ -26,40 +26,33 @@ bool has_definition(std::string_view raw) {
   return raw.find('$') != std::string_view::npos || raw.find("&#") != std::string_view::npos;
 }
 
-/// A file that is included, read once.
-struct IncludedFile {
-  std::string text;
-  std::optional<Markup> markup;  ///< null: it has problems
-  std::vector<Error> problems;
-  bool is_told = false;  ///< the problems are
-};
-
 /// A text while it is expanded.
 struct OpenText {
   std::string_view text;
   const Markup& markup;
-  int index;  ///< in the map of lines
+  int index;  ///< among the sources
   fs::path folder;
-  std::string identity;  ///< of its file; empty: unknown
+  std::string identity = {};  ///< of its file; empty: unknown
   const OpenText* includer = nullptr;
-  LineCounter lines{text};
+  std::size_t depth = 0;  ///< of elements around those of it that take part
 
   std::string_view name_of(const ElementPlace& element) const { return element.name.of(text); }
+  TextPlace at(const TextRange& range) const { return {index, range}; }
+  TextPlace name_place(const ElementPlace& element) const { return at(element.name); }
 };
 
-/// The lines of all definitions of a text, by name, counted when one is asked for.
-std::function<std::optional<int>(std::string_view)> later_definitions(const OpenText& text) {
-  return [&text, lines = std::optional<std::map<std::string_view, int, std::less<>>>()](
-             std::string_view name) mutable -> std::optional<int> {
+/// The lines of all definitions of a text, by name, found when one is asked for.
+std::function<std::optional<int>(std::string_view)> later_definitions(const OpenText& text,
+                                                                      const SourceMap& sources) {
+  using Lines = std::map<std::string_view, int, std::less<>>;
+  return [&, lines = std::optional<Lines>()](std::string_view name) mutable -> std::optional<int> {
     if (!lines) {
       lines.emplace();
-      LineCounter counter(text.text);
       for (std::size_t k = 0; k < text.markup.elements.size(); ++k) {
         const ElementPlace& element = text.markup.elements[k];
         if (text.name_of(element) != define_name) continue;
-        for (const AttributePlace& attribute : text.markup.attributes_of(k))
-          if (attribute.name.of(text.text) == "name")
-            lines->emplace(attribute.value.of(text.text), counter.line_of(element.whole().begin));
+        if (const auto* const own = text.markup.attribute_of(k, "name", text.text))
+          lines->emplace(own->value.of(text.text), sources.place_of(text.name_place(element)).line);
       }
     }
     const auto found = lines->find(name);
@@ -69,74 +62,63 @@ std::function<std::optional<int>(std::string_view)> later_definitions(const Open
 
 class Expander {
  public:
-  Expander(const TextFiles& files, Findings& findings, std::string name)
-      : files_(files), findings_(findings), map_(std::move(name)) {}
+  Expander(const Markup& markup, const TextFiles& files, SourceMap& sources, Findings& findings)
+      : files_(files),
+        sources_(sources),
+        findings_(findings),
+        expansion_{Tree::spliced(sources.text(0), markup)} {}
 
-  std::optional<Expansion> expand(const SourceText& scene);
+  std::optional<Expansion> expand(const Markup& markup, const fs::path& folder);
 
  private:
-  void expand(OpenText& text, std::size_t begin, std::size_t end, Scope& scope);
-  void expand_attribute(OpenText& text, const ElementPlace& element,
+  void expand(const OpenText& text, Scope& scope);
+  void expand_attribute(const OpenText& text, const ElementPlace& element,
                         const AttributePlace& attribute, Scope& scope);
-  void define(OpenText& text, std::size_t index, const Scope& scope, Definitions& definitions,
+  void define(const OpenText& text, std::size_t index, const Scope& scope, Definitions& definitions,
               const Definitions* given);
-  bool include(OpenText& text, std::size_t index, Scope& scope);
-  bool expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
+  void include(const OpenText& text, std::size_t index, Scope& scope);
+  void expand_file(const OpenText& text, std::uint32_t element, const fs::path& path,
                    const std::string& identity, Scope& inner);
   const IncludedFile* read(const fs::path& path, const std::string& identity, int index);
-  bool read_attributes(OpenText& text, std::size_t index,
+  bool may_include(const OpenText& inside);
+  bool read_attributes(const OpenText& text, std::size_t index,
                        std::span<std::pair<std::string_view, std::optional<std::string>>> table);
-  bool check_place(OpenText& text, const ElementPlace& element);
-  void report_unused(OpenText& text, const std::string& file, const Definitions& given,
-                     const Scope& inner);
+  bool check_place(const OpenText& text, const ElementPlace& element);
+  void report_unused(const std::string& file, const Definitions& given, const Scope& inner);
 
-  std::string_view content_of(const OpenText& text, const ElementPlace& element) const;
-
-  void emit(std::string_view part) {
-    out_ += part;
-    line_ += static_cast<int>(std::count(part.begin(), part.end(), '\n'));
+  void add(const TextPlace& place, std::string message) {
+    findings_.add_problem(place, std::move(message));
   }
-  void begin_run(int text, int line) {
-    emit("\n");
-    map_.add_run(line_, text, line);
-  }
-
-  void add(OpenText& text, std::size_t where, std::string message) {
-    findings_.add_problem(map_.place_in(text.index, text.lines.line_of(where)), std::move(message));
-  }
-  void add_value(OpenText& text, std::size_t where, std::string_view element,
-                 std::string_view attribute, std::string_view value, std::string_view complaint) {
-    add(text, where,
-        fmt::format("<{}> {}={}: {}", element, attribute, in_quotes(value), complaint));
+  /// About the value of an attribute.
+  void add_value(const OpenText& text, const AttributePlace& place, std::string_view element,
+                 std::string_view value, std::string_view complaint) {
+    add(text.at(place.value), fmt::format("<{}> {}={}: {}", element, place.name.of(text.text),
+                                          in_quotes(value), complaint));
   }
   std::string told(const ValueRefusal& refusal, const OpenText& text) const {
-    return refusal.complaint + values_.sources(refusal.sources, text.index, map_);
+    return refusal.complaint + sources_.told(refusal.sources, text.at({}));
   }
   /// Adds a problem that concerns a limit, after which nothing is expanded further.
-  void stop(OpenText& text, std::size_t where, std::string message) {
-    if (!is_stopped_) add(text, where, std::move(message));
+  void stop(const TextPlace& place, std::string message) {
+    if (!is_stopped_) add(place, std::move(message));
     is_stopped_ = true;
   }
   /// Counts bytes that are read or defined. Returns whether they are within the limit.
-  bool spend(std::size_t bytes, OpenText& text, std::size_t where) {
+  bool spend(std::size_t bytes, const TextPlace& place) {
     spent_ += bytes;
     if (findings_.is_over(bytes)) is_stopped_ = true;
-    if (spent_ <= most_expanded && out_.size() <= most_expanded) return true;
-    stop(text, where,
+    if (spent_ <= most_expanded) return true;
+    stop(place,
          fmt::format("the scene, with all that it includes and defines, is larger than {} MiB",
                      most_expanded >> 20U));
     return false;
   }
 
   const TextFiles& files_;
+  SourceMap& sources_;
   Findings& findings_;
-  LineMap map_;
-  DefinedValues values_;
-  std::vector<std::size_t> unknown_;
+  Expansion expansion_;
   ExpansionRules rules_;
-  std::map<std::string, std::unique_ptr<IncludedFile>> read_;  // by identity
-  std::string out_;
-  int line_ = 1;  // of the end of out_
   std::size_t spent_ = 0;
   std::size_t markup_count_ = 0;
   int include_count_ = 0;
@@ -144,47 +126,31 @@ class Expander {
   bool is_stopped_ = false;
 };
 
-std::string_view Expander::content_of(const OpenText& text, const ElementPlace& element) const {
-  if (element.closes_itself()) return {};
-  const std::size_t closing = text.text.rfind('<', element.end - 1);
-  return text.text.substr(element.tag_end, closing - element.tag_end);
-}
-
-std::optional<Expansion> Expander::expand(const SourceText& scene) {
+std::optional<Expansion> Expander::expand(const Markup& markup, const fs::path& folder) {
   const std::size_t problems = findings_.problem_count();
-  const Result<std::string> identity = files_.identify(scene.name);
-  OpenText text{.text = scene.text,
-                .markup = scene.markup,
-                .index = 0,
-                .folder = scene.folder,
-                .identity = identity ? *identity : std::string()};
-  markup_count_ = scene.markup.elements.size() + scene.markup.attributes.size();
-  out_.reserve(scene.text.size());
+  const Result<std::string> identity = files_.identify(sources_.sources().front().file);
+  const OpenText text{.text = sources_.text(0),
+                      .markup = markup,
+                      .index = 0,
+                      .folder = folder,
+                      .identity = identity ? *identity : std::string()};
+  markup_count_ = markup.elements.size() + markup.attributes.size();
+  spent_ = text.text.size();
   Scope scope;
-  scope.later = later_definitions(text);
-  expand(text, 0, scene.text.size(), scope);
-  if (!is_stopped_) spend(0, text, 0);
+  scope.later = later_definitions(text, sources_);
+  expand(text, scope);
   if (is_stopped_) return std::nullopt;
-  return Expansion{.text = std::move(out_),
-                   .files = std::move(map_),
-                   .values = std::move(values_),
-                   .is_sound = findings_.problem_count() == problems,
-                   .unknown = std::move(unknown_)};
+  expansion_.is_sound = findings_.problem_count() == problems;
+  return std::move(expansion_);
 }
 
-/// Expands the bytes from `begin` to `end`, which contain whole elements.
-void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope& scope) {
+void Expander::expand(const OpenText& text, Scope& scope) {
   const auto& elements = text.markup.elements;
-  const auto first = std::lower_bound(
-      elements.begin(), elements.end(), begin,
-      [](const ElementPlace& element, std::size_t at) { return element.name.begin < at; });
-  std::size_t written = begin;
-  const auto write_to = [&](std::size_t to) {
-    emit(text.text.substr(written, to - written));
-    written = to;
-  };
-  for (auto k = static_cast<std::size_t>(first - elements.begin());
-       k < elements.size() && elements[k].name.begin < end && !is_stopped_;) {
+  // A $ may also be written as &#36;.
+  const bool has_values = find_from(text.text, "$", 0, findings_) != std::string_view::npos ||
+                          find_from(text.text, "&#", 0, findings_) != std::string_view::npos;
+  std::vector<std::uint32_t> ends;  // of the elements around
+  for (std::size_t k = 0; k < elements.size() && !is_stopped_;) {
     constexpr std::size_t parts_of_element = 256;  // besides those of its bytes
     if (findings_.is_over(parts_of_element)) {
       is_stopped_ = true;
@@ -192,71 +158,53 @@ void Expander::expand(OpenText& text, std::size_t begin, std::size_t end, Scope&
     }
     const ElementPlace& element = elements[k];
     const std::string_view name = text.name_of(element);
-    if (name == define_name) {
-      write_to(element.whole().begin);
-      if (check_place(text, element)) define(text, k, scope, scope.own, scope.given);
-      // Its lines stay, so that those after it keep theirs.
-      const std::string_view whole = element.whole().of(text.text);
-      emit(std::string(static_cast<std::size_t>(std::count(whole.begin(), whole.end(), '\n')),
-                       '\n'));
-      written = element.end;
+    const bool is_define = name == define_name;
+    if (is_define || name == include_name) {
+      if (is_define && check_place(text, element)) define(text, k, scope, scope.own, scope.given);
+      if (!is_define && check_place(text, element)) include(text, k, scope);
       k = text.markup.after(k);
-    } else if (name == include_name) {
-      write_to(element.whole().begin);
-      if (!check_place(text, element) || !include(text, k, scope))
-        emit(fmt::format("<{}/>", include_name));
-      begin_run(text.index, text.lines.line_of(element.end));
-      written = element.end;
-      k = text.markup.after(k);
-    } else {
-      for (const AttributePlace& attribute : text.markup.attributes_of(k)) {
-        if (!has_definition(attribute.value.of(text.text))) continue;
-        write_to(attribute.value.begin);
-        expand_attribute(text, element, attribute, scope);
-        written = attribute.whole().end;
-      }
-      ++k;
+      continue;
     }
+    while (!ends.empty() && ends.back() <= element.name.begin) ends.pop_back();
+    if (text.depth + ends.size() >= deepest_element)
+      return stop(text.name_place(element), "malformed XML: " + nested_too_deep(name));
+    ends.push_back(element.end);
+    for (const AttributePlace& attribute : text.markup.attributes_of(k))
+      if (has_values && has_definition(attribute.value.of(text.text)))
+        expand_attribute(text, element, attribute, scope);
+    ++k;
   }
-  write_to(end);
 }
 
-/// Writes a value with its closing quote; for one that cannot be made, see `Expansion`.
-void Expander::expand_attribute(OpenText& text, const ElementPlace& element,
+void Expander::expand_attribute(const OpenText& text, const ElementPlace& element,
                                 const AttributePlace& attribute, Scope& scope) {
-  const std::string_view raw = attribute.value.of(text.text);
-  const std::string value = decoded(raw);
+  const std::string value = decoded(attribute.value.of(text.text));
   const std::string_view owner = text.name_of(element), name = attribute.name.of(text.text);
+  const TextPlace place = text.at(attribute.value);
   findings_.is_over(value.size());
-  const auto expanded =
-      expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number,
-                   findings_.may_compare_names());
+  auto expanded = expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number,
+                               findings_.may_compare_names());
   if (!expanded) {
     const bool is_scene = element.parent == ElementPlace::no_parent && owner == scene_name;
     if (!expanded.error().complaint.empty())
-      add_value(text, attribute.name.begin, owner, name, value,
+      add_value(text, attribute, owner, value,
                 is_scene ? "the attributes of <scene> come before all definitions; write the value "
                            "itself"
                          : told(expanded.error(), text));
-    unknown_.push_back(out_.size());
-  } else if (!expanded->sources.empty()) {
-    values_.add(line_, name, expanded->text, expanded->sources);
+    return expansion_.tree.set_value(text.index, attribute.value.begin, {});
   }
-  const char quote = text.text[attribute.value.end];
-  emit(expanded ? encoded(expanded->text, quote) : "?");
-  emit({&quote, 1});
-  spend(0, text, attribute.name.begin);
-  // The value is on one line now. Its other lines follow it.
-  emit(std::string(static_cast<std::size_t>(std::count(raw.begin(), raw.end(), '\n')), '\n'));
+  spend(expanded->text.size(), place);
+  if (!expanded->sources.empty()) sources_.add_value(place, expanded->sources);
+  expansion_.tree.set_value(text.index, attribute.value.begin, std::move(expanded->text));
 }
 
-bool Expander::check_place(OpenText& text, const ElementPlace& element) {
+bool Expander::check_place(const OpenText& text, const ElementPlace& element) {
   const std::string_view name = text.name_of(element);
   const std::string_view parent = element.parent == ElementPlace::no_parent
                                       ? ""
                                       : text.name_of(text.markup.elements[element.parent]);
   if (rules_.may_contain(parent) || parent == fragment_name) return true;
-  add(text, element.whole().begin,
+  add(text.name_place(element),
       parent.empty()
           ? fmt::format("the root element is <{}>, which belongs in a <scene> or <fragment>", name)
           : fmt::format("<{}> has no element {}; it belongs in {}", parent, in_quotes(name),
@@ -267,7 +215,7 @@ bool Expander::check_place(OpenText& text, const ElementPlace& element) {
 /// Reads the attributes of an <include> or <define>, all of which are required. Returns whether
 /// they are complete.
 bool Expander::read_attributes(
-    OpenText& text, std::size_t index,
+    const OpenText& text, std::size_t index,
     std::span<std::pair<std::string_view, std::optional<std::string>>> table) {
   const ElementPlace& element = text.markup.elements[index];
   const std::string_view owner = text.name_of(element);
@@ -283,42 +231,43 @@ bool Expander::read_attributes(
       continue;
     }
     is_complete = false;
-    add(text, given.name.begin,
+    add(text.at(given.name),
         fmt::format("<{}> has no attribute {}{}", owner, in_quotes(name), hint(name, names)));
   }
   if (!is_complete) return false;
   for (const auto& [name, value] : table) {
     if (value) continue;
     is_complete = false;
-    add(text, element.whole().begin, fmt::format("<{}> needs the attribute \"{}\"", owner, name));
+    add(text.name_place(element), fmt::format("<{}> needs the attribute \"{}\"", owner, name));
   }
   return is_complete;
 }
 
 /// Reads a <define> into `definitions`. What is given from outside replaces its value.
-void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
+void Expander::define(const OpenText& text, std::size_t index, const Scope& scope,
                       Definitions& definitions, const Definitions* given) {
   const ElementPlace& element = text.markup.elements[index];
   std::pair<std::string_view, std::optional<std::string>> table[] = {{"name", {}}, {"value", {}}};
   const bool is_complete = read_attributes(text, index, table);
-  if (const std::string_view content = bare_text(content_of(text, element)); !content.empty())
-    add(text, element.tag_end,
-        fmt::format("<{}> contains {}; nothing is allowed in it", define_name, in_quotes(content)));
+  if (const auto content = bare_text(text.text, element.content_in(text.text)); content)
+    add(text.at(*content), fmt::format("<{}> contains {}; nothing is allowed in it", define_name,
+                                       in_quotes(content->of(text.text))));
   if (!table[0].second) return;
   const std::string& name = *table[0].second;
-  const std::size_t where = text.markup.attributes_of(index).front().name.begin;
+  const AttributePlace& own = *text.markup.attribute_of(index, "name", text.text);
   if (!is_definition_name(name))
-    return add_value(text, where, define_name, "name", name,
+    return add_value(text, own, define_name, name,
                      "must be a letter or _ followed by letters, digits and _");
   if (const auto first = definitions.find(name); first != definitions.end())
-    return add_value(text, where, define_name, "name", name,
-                     fmt::format("the name is already defined at line {}", first->second.line));
+    return add_value(text, own, define_name, name,
+                     fmt::format("the name is already defined at {}",
+                                 sources_.title_of(first->second.place, text.at(own.value))));
   if (++definition_count_ > most_definitions)
-    return stop(text, where,
+    return stop(text.at(own.value),
                 fmt::format("the scene has more than {} definitions", most_definitions));
   Definition definition;
-  const int line = text.lines.line_of(element.whole().begin);
-  definition.sources = {values_.add_definition(name, text.index, line)};
+  const TextPlace place = text.name_place(element);
+  definition.sources = {sources_.add_definition(name, place)};
   const auto instead = given ? given->find(name) : Definitions::const_iterator();
   if (is_complete && given && instead != given->end()) {
     instead->second.is_used = true;
@@ -334,62 +283,59 @@ void Expander::define(OpenText& text, std::size_t index, const Scope& scope,
                                 value->sources.end());
       definition.set(value->text);
     } else if (!value.error().complaint.empty()) {
-      add_value(text, where, define_name, "value", *table[1].second, told(value.error(), text));
+      add_value(text, *text.markup.attribute_of(index, "value", text.text), define_name,
+                *table[1].second, told(value.error(), text));
     }
   }
-  definition.line = line;
-  spend(definition.text.size(), text, where);
+  definition.place = place;
+  spend(definition.text.size(), place);
   definitions.emplace(name, std::move(definition));
 }
 
-/// Returns whether the file's content was written.
-bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
+void Expander::include(const OpenText& text, std::size_t index, Scope& scope) {
   const ElementPlace& element = text.markup.elements[index];
   std::pair<std::string_view, std::optional<std::string>> table[] = {{"file", {}}};
   const bool is_complete = read_attributes(text, index, table);
   Definitions given;
-  std::size_t content = element.tag_end;
-  const auto check_text = [&](std::size_t to) {
-    const std::string_view bare = bare_text(text.text.substr(content, to - content));
-    if (!bare.empty())
-      add(text, content,
-          fmt::format("<{}> contains {}; only <{}> is allowed in it", include_name, in_quotes(bare),
-                      define_name));
+  TextRange content = element.content_in(text.text);
+  const auto check_text = [&](std::uint32_t to) {
+    if (const auto bare = bare_text(text.text, {content.begin, to}); bare)
+      add(text.at(*bare), fmt::format("<{}> contains {}; only <{}> is allowed in it", include_name,
+                                      in_quotes(bare->of(text.text)), define_name));
   };
   const std::size_t after = text.markup.after(index);
   for (std::size_t k = index + 1; k < after; k = text.markup.after(k)) {
     const ElementPlace& child = text.markup.elements[k];
     check_text(child.whole().begin);
-    content = child.end;
+    content.begin = child.end;
     const std::string_view name = text.name_of(child);
     constexpr std::string_view allowed[] = {define_name};
     if (name == define_name)
       define(text, k, scope, given, nullptr);
     else
-      add(text, child.whole().begin,
-          fmt::format("<{}> has no element {}{}", include_name, in_quotes(name),
-                      hint(name, allowed)));
+      add(text.name_place(child), fmt::format("<{}> has no element {}{}", include_name,
+                                              in_quotes(name), hint(name, allowed)));
   }
-  if (!element.closes_itself()) check_text(text.text.rfind('<', element.end - 1));
-  if (!is_complete) return false;
+  check_text(content.end);
+  if (!is_complete) return;
 
   const std::string& written = *table[0].second;
-  const std::size_t where = text.markup.attributes_of(index).front().name.begin;
+  const AttributePlace& named = *text.markup.attribute_of(index, "file", text.text);
   const auto refuse = [&](std::string_view complaint) {
-    add_value(text, where, include_name, "file", written, complaint);
-    return false;
+    add_value(text, named, include_name, written, complaint);
   };
   const auto expanded = expand_value(written, scope, Use::Text, findings_.may_compare_names());
-  if (!expanded)
-    return expanded.error().complaint.empty() ? false : refuse(told(expanded.error(), text));
+  if (!expanded) {
+    if (!expanded.error().complaint.empty()) refuse(told(expanded.error(), text));
+    return;
+  }
   const std::string& file = expanded->text;
   if (trimmed(file).empty()) return refuse("is empty; the name of a file is required");
   if (file.find('\0') != std::string::npos) return refuse("is not the name of a file");
   const fs::path path = text.folder / file;
-  if (++include_count_ > most_includes) {
-    stop(text, where, fmt::format("the scene includes more than {} files", most_includes));
-    return false;
-  }
+  if (++include_count_ > most_includes)
+    return stop(text.at(named.value),
+                fmt::format("the scene includes more than {} files", most_includes));
   int depth = 1;
   for (const OpenText* one = &text; one->includer; one = one->includer) ++depth;
   if (depth > deepest_include)
@@ -405,14 +351,13 @@ bool Expander::include(OpenText& text, std::size_t index, Scope& scope) {
   Scope inner;
   inner.outer = &scope;
   inner.given = &given;
-  const bool is_written = expand_file(text, element, path, *identity, inner);
-  if (findings_.problem_count() == problems) report_unused(text, file, given, inner);
+  expand_file(text, static_cast<std::uint32_t>(index), path, *identity, inner);
+  if (findings_.problem_count() == problems) report_unused(file, given, inner);
   scope.take(std::move(inner));
-  return is_written;
 }
 
 /// A definition that is given to a file which neither has nor uses it is probably misspelt.
-void Expander::report_unused(OpenText& text, const std::string& file, const Definitions& given,
+void Expander::report_unused(const std::string& file, const Definitions& given,
                              const Scope& inner) {
   constexpr std::size_t most_compared = 1000;
   std::vector<std::string_view> names;
@@ -424,7 +369,7 @@ void Expander::report_unused(OpenText& text, const std::string& file, const Defi
     const auto near = findings_.may_compare_names() ? nearest_word(name, names)
                                                     : std::optional<std::string_view>();
     findings_.add_problem(
-        map_.place_in(text.index, definition.line),
+        definition.place,
         fmt::format("<{}> name={}: {} neither defines nor uses it{}", define_name, in_quotes(name),
                     in_quotes(file),
                     near ? fmt::format("; did you mean {}?", in_quotes(*near)) : ""));
@@ -433,77 +378,79 @@ void Expander::report_unused(OpenText& text, const std::string& file, const Defi
 
 /// The file, from the disk or as it was read before; null: it has problems.
 const IncludedFile* Expander::read(const fs::path& path, const std::string& identity, int index) {
-  std::unique_ptr<IncludedFile>& file = read_[identity];
+  std::unique_ptr<IncludedFile>& file = expansion_.files[identity];
   if (!file) {
     file = std::make_unique<IncludedFile>();
-    Findings own(path.string(), findings_.should_stop());
     Result<std::string> bytes = files_.read(path, most_expanded - std::min(spent_, most_expanded));
-    if (bytes) {
-      file->text = *std::move(bytes);
-      file->markup = scan_markup(
-          file->text, own, most_markup - std::min(markup_count_, most_markup), rules_.roots());
-    } else {
-      own.add_problem(0, bytes.error().message);
+    if (!bytes) {
+      add({index}, bytes.error().message);
+      return nullptr;
     }
-    file->problems = own.problems();
-    if (own.is_stopped()) findings_.is_over(StopPoll::parts_between);
-  }
-  if (file->markup) return file.get();
-  if (std::exchange(file->is_told, true)) {  // alike, they would be told once
+    file->text = std::make_shared<SourceText>(*std::move(bytes));
+    sources_.set_text(index, file->text);
+    file->markup = scan_markup(findings_, index, most_markup - std::min(markup_count_, most_markup),
+                               rules_.roots());
+  } else if (file->markup) {
+    sources_.set_text(index, file->text);
+  } else {  // alike, they would be told once
     findings_.add_consequence();
-    return nullptr;
   }
-  for (const Error& error : file->problems)
-    findings_.add_problem(map_.place_in(index, error.line), error.message);
-  return nullptr;
+  return file->markup ? file.get() : nullptr;
 }
 
-/// Writes the content of a file. Returns whether it has any that may be included.
-bool Expander::expand_file(OpenText& text, const ElementPlace& element, const fs::path& path,
-                           const std::string& identity, Scope& inner) {
-  const std::size_t where = element.whole().begin;
-  const int index = map_.add_text(path.string(), text.index, text.lines.line_of(where));
-  const IncludedFile* const file = read(path, identity, index);
-  if (!file || !spend(file->text.size(), text, where)) return false;
-  const auto& elements = file->markup->elements;
-  markup_count_ += elements.size() + file->markup->attributes.size();
-  if (markup_count_ > most_markup) {
-    stop(text, where,
-         fmt::format("the scene, with all that it includes, has more than {} elements and "
-                     "attributes",
-                     most_markup));
-    return false;
-  }
-  OpenText inside{.text = file->text,
-                  .markup = *file->markup,
-                  .index = index,
-                  .folder = path.parent_path(),
-                  .identity = identity,
-                  .includer = &text};
-  const ElementPlace& root = elements.front();
+/// Whether the root of a file may be included.
+bool Expander::may_include(const OpenText& inside) {
+  const ElementPlace& root = inside.markup.elements.front();
   const std::string_view name = inside.name_of(root);
   if (std::find(rules_.roots().begin(), rules_.roots().end(), name) == rules_.roots().end()) {
-    add(inside, root.whole().begin,
+    add(inside.name_place(root),
         fmt::format("the root element cannot be included; a file that is included must contain one "
                     "of: {}",
                     listed(rules_.roots())));
     return false;
   }
-  if (name == fragment_name)
-    for (const AttributePlace& attribute : file->markup->attributes_of(0))
-      add(inside, attribute.name.begin,
-          fmt::format("<{}> has no attribute {}; allowed: none", name,
-                      in_quotes(attribute.name.of(inside.text))));
-  std::size_t begin = root.whole().begin, end = root.end;
-  if (name == fragment_name || name == scene_name) {
-    begin = root.tag_end;
-    end = begin + content_of(inside, root).size();
-  }
-  begin_run(index, inside.lines.line_of(begin));
-  inner.later = later_definitions(inside);
-  expand(inside, begin, end, inner);
-  inner.later = {};
+  if (name != fragment_name) return true;
+  for (const AttributePlace& attribute : inside.markup.attributes_of(0))
+    add(inside.at(attribute.name), fmt::format("<{}> has no attribute {}; allowed: none", name,
+                                               in_quotes(attribute.name.of(inside.text))));
   return true;
+}
+
+/// Puts the content of a file, if it has any that may be included, in the place of an element.
+void Expander::expand_file(const OpenText& text, std::uint32_t element, const fs::path& path,
+                           const std::string& identity, Scope& inner) {
+  const ElementPlace& place = text.markup.elements[element];
+  const int index = sources_.add(path.string(), text.name_place(place));
+  const IncludedFile* file = read(path, identity, index);
+  if (file && !spend(file->text->text().size(), text.name_place(place))) file = nullptr;
+  if (file) markup_count_ += file->markup->elements.size() + file->markup->attributes.size();
+  if (markup_count_ > most_markup) {
+    stop(text.name_place(place),
+         fmt::format("the scene, with all that it includes, has more than {} elements and "
+                     "attributes",
+                     most_markup));
+  }
+  if (!file || is_stopped_) return expansion_.tree.include(text.index, element, {}, nullptr, false);
+  const std::string_view root = file->markup->elements.front().name.of(file->text->text());
+  const bool is_content = root == fragment_name || root == scene_name;
+  std::size_t depth = text.depth;
+  for (std::uint32_t at = place.parent; at != ElementPlace::no_parent;
+       at = text.markup.elements[at].parent)
+    ++depth;
+  const OpenText inside{.text = file->text->text(),
+                        .markup = *file->markup,
+                        .index = index,
+                        .folder = path.parent_path(),
+                        .identity = identity,
+                        .includer = &text,
+                        .depth = depth - (is_content ? 1 : 0)};
+  const bool is_included = may_include(inside);
+  expansion_.tree.include(text.index, element, inside.text, is_included ? &*file->markup : nullptr,
+                          is_content);
+  if (!is_included) return;
+  inner.later = later_definitions(inside, sources_);
+  expand(inside, inner);
+  inner.later = {};
 }
 
 }  // namespace
@@ -531,9 +478,9 @@ TextFiles files_on_disk(const fs::path& root, const StopRequest& should_stop) {
   return {.identify = identify, .read = read};
 }
 
-std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,
-                                Findings& findings) {
-  return Expander(files, findings, scene.name).expand(scene);
+std::optional<Expansion> expand(const Markup& markup, const fs::path& folder,
+                                const TextFiles& files, SourceMap& sources, Findings& findings) {
+  return Expander(markup, files, sources, findings).expand(markup, folder);
 }
 
 }  // namespace pliant::xml

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,10 +12,10 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/scene/format/description.hpp"
-#include "pliant/scene/text/defined_values.hpp"
 #include "pliant/scene/text/findings.hpp"
-#include "pliant/scene/text/line_map.hpp"
 #include "pliant/scene/text/markup.hpp"
+#include "pliant/scene/text/source_map.hpp"
+#include "pliant/scene/text/tree.hpp"
 
 namespace pliant {
 namespace xml {
@@ -24,8 +26,8 @@ inline constexpr int deepest_include = 16;
 inline constexpr int most_includes = 10'000;
 /// The most definitions, each counted as often as its file is included.
 inline constexpr int most_definitions = 1'000'000;
-/// The most bytes of an expanded text; also of all that is read for it, each file counted as often
-/// as it is included, together with the values of all definitions.
+/// The most bytes of all texts of a scene, each counted as often as it is included, together with
+/// the values of all definitions and all values that are made of them.
 inline constexpr std::size_t most_expanded = std::size_t{256} << 20U;
 /// The most bytes of a value in which a definition is used.
 inline constexpr std::size_t longest_value = std::size_t{64} << 10U;
@@ -43,38 +45,26 @@ struct TextFiles {
 /// file that was identified, if that was the last one.
 TextFiles files_on_disk(const std::filesystem::path& root, const StopRequest& should_stop = {});
 
-/// A text of a file before it is expanded.
-struct SourceText {
-  std::string_view text;
-  const Markup& markup;
-  std::string name;              ///< of the file, in messages
-  std::filesystem::path folder;  ///< paths in it are relative to this
+/// A file that is included, read once.
+struct IncludedFile {
+  std::shared_ptr<const SourceText> text = {};
+  std::optional<Markup> markup = {};  ///< null: it has problems, which are reported
 };
 
-/// Whether a text has an <include>, a <define> or a `$`; otherwise it is its own expansion.
-bool needs_expansion(const SourceText& source, Findings& findings);
-
-/// A text in which the content of files has taken the place of each <include>, the value of
-/// definitions that of each `$NAME`, and in which no <define> is left.
+/// The elements of a scene, and the included files that they are of.
 struct Expansion {
-  std::string text;
-  LineMap files;                          ///< of its lines
-  DefinedValues values = {};              ///< those that were made of definitions
-  bool is_sound = true;                   ///< false: there are problems, see below
-  std::vector<std::size_t> unknown = {};  ///< offsets of the values that could not be made
+  Tree tree;
+  std::map<std::string, std::unique_ptr<IncludedFile>> files = {};  ///< by identity
+  bool is_sound = true;  ///< false: some content is missing, for reasons that are reported
 };
 
-/// What takes the place of a value that could not be made, once the expanded text is scanned: a
-/// character that no file may have. Its problem is reported.
-inline constexpr char unknown_value = '\x01';
-
-/// Expands the text of a scene: docs/scene-format.md, "Sharing". Each element and attribute of the
-/// result begins on the line of the expansion whose place in `files` is that of the element or
-/// attribute in its file. All problems of including and defining are found. For those of the rest,
-/// an <include/> then stands where a file could not be included, and a `?` for a value that could
-/// not be made. Null after a problem that concerns a limit.
-std::optional<Expansion> expand(const SourceText& scene, const TextFiles& files,
-                                Findings& findings);
+/// Expands the text of a scene, the first of the sources: docs/scene-format.md, "Sharing". Adds the
+/// texts of the included files and the values that definitions made to the sources. All problems of
+/// including and defining are found; to find those of the rest, an <include> stays where a file
+/// could not be included. Null after a problem that concerns a limit. The sources and the markup
+/// must outlive the expansion. `folder`: that of the scene's file.
+std::optional<Expansion> expand(const Markup& markup, const std::filesystem::path& folder,
+                                const TextFiles& files, SourceMap& sources, Findings& findings);
 
 /// The elements that an <include> or a <define> may stand in.
 std::vector<std::string_view> including_elements();

@@ -31,15 +31,21 @@ ExpansionRules::ExpansionRules() : containers_(including_elements()) {
   }
 }
 
-std::string_view bare_text(std::string_view content) {
-  while (!content.empty()) {
-    const std::string_view before = trimmed(content.substr(0, content.find('<')));
-    if (!before.empty() || content.find('<') == std::string_view::npos) return before;
-    content.remove_prefix(content.find('<'));
-    if (!content.starts_with("<!--")) return content;
-    content.remove_prefix(content.find("-->", 4) + 3);
+std::optional<TextRange> bare_text(std::string_view text, TextRange content) {
+  std::string_view rest = content.of(text);
+  const auto range_of = [&](std::string_view part) {
+    const auto begin = static_cast<std::uint32_t>(part.data() - text.data());
+    return TextRange{begin, begin + static_cast<std::uint32_t>(part.size())};
+  };
+  while (!rest.empty()) {
+    const std::string_view before = trimmed(rest.substr(0, rest.find('<')));
+    if (!before.empty()) return range_of(before);
+    if (rest.find('<') == std::string_view::npos) break;
+    rest.remove_prefix(rest.find('<'));
+    if (!rest.starts_with("<!--")) return range_of(rest);
+    rest.remove_prefix(rest.find("-->", 4) + 3);
   }
-  return {};
+  return std::nullopt;
 }
 
 std::vector<std::string_view> including_elements() {
@@ -47,17 +53,6 @@ std::vector<std::string_view> including_elements() {
   for (const ElementFormat& each : scene_format())
     if (each.may_include) names.push_back(each.name);
   return names;
-}
-
-bool needs_expansion(const SourceText& source, Findings& findings) {
-  // A $ may also be written as &#36;.
-  for (const std::string_view sign : {"$", "&#"})
-    if (find_from(source.text, sign, 0, findings) != std::string_view::npos) return true;
-  return std::any_of(source.markup.elements.begin(), source.markup.elements.end(),
-                     [&](const ElementPlace& element) {
-                       const std::string_view name = element.name.of(source.text);
-                       return name == include_name || name == define_name;
-                     });
 }
 
 }  // namespace pliant::xml

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -40,7 +41,7 @@ class ExpansionRules {
   std::set<std::pair<std::string_view, std::string_view>> texts_;
 };
 
-/// Text that is not in comments or elements of the content of an element; empty: none.
-std::string_view bare_text(std::string_view content);
+/// The first text in a range that is not in comments, up to the next element; null: none.
+std::optional<TextRange> bare_text(std::string_view text, TextRange content);
 
 }  // namespace pliant::xml

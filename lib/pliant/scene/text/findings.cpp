@@ -18,23 +18,25 @@ constexpr std::size_t most_bytes = std::size_t{16} << 20U;
 
 }  // namespace
 
-void Findings::add_problem(int line, std::string message) {
-  message += values_.sources(line, message, files_);
-  add_problem(files_.place_of(line), std::move(message));
-}
-
-void Findings::add_problem(ScenePlace place, std::string message) {
+void Findings::add_problem(const TextPlace& place, std::string message) {
   ++problem_count_;
   if (is_full()) return;
-  const bool is_new =
-      place.chain.empty() || included_.emplace(place.file, place.line, message).second;
-  if (!is_new) return;
-  message = place.told(std::move(message));
-  bytes_ += message.size() + place.file.size();
-  problems_.push_back(Error{.code = ErrorCode::InvalidInput,
-                            .message = std::move(message),
-                            .file = std::move(place.file),
-                            .line = place.line});
+  const bool is_included = place.is_known() && place.text != 0;
+  if (is_included) {
+    const ScenePlace told = sources_->place_of(place);
+    if (!included_.emplace(told.file, told.line, message).second) return;
+  }
+  list(sources_->located({.message = std::move(message)}, place));
+}
+
+void Findings::add_problem(Error error) {
+  ++problem_count_;
+  if (!is_full()) list(std::move(error));
+}
+
+void Findings::list(Error error) {
+  bytes_ += error.message.size() + error.file.size();
+  problems_.push_back(std::move(error));
 }
 
 bool Findings::is_full() const { return problems_.size() >= most_listed || bytes_ >= most_bytes; }
@@ -49,38 +51,37 @@ void Findings::stop() {
   ++problem_count_;
 }
 
-void Findings::add_note(int line, std::string message) {
+void Findings::add_note(const TextPlace& place, std::string message) {
   if (notes_.size() >= most_listed || bytes_ >= most_bytes) return;
   bytes_ += message.size();
-  notes_.emplace_back(line, std::move(message));
+  notes_.emplace_back(place, std::move(message));
 }
 
 std::vector<Error> Findings::problems() const {
-  const std::string& file = files_.texts().front().file;
-  std::vector<Error> problems = sorted(problems_, file);
-  if (is_full())
-    problems.push_back(Error{.code = ErrorCode::InvalidInput,
-                             .message = "too many problems; reading stopped here",
-                             .file = problems.back().file,
-                             .line = problems.back().line});
+  std::vector<Error> problems = sorted(problems_, sources_->sources().front().file);
+  if (is_full()) {
+    problems.push_back(problems.back());
+    problems.back().message = "too many problems; reading stopped here";
+  }
   return problems;
 }
 
 Error Findings::to_error() const {
   if (is_stopped_) return interrupted().value();
   PLIANT_EXPECTS(!problems_.empty());
-  return as_one(problems(), files_.texts().front().file);
+  return as_one(problems(), sources_->sources().front().file);
 }
 
 std::vector<SceneNote> Findings::notes() const {
-  std::vector<std::pair<int, std::string>> ordered = notes_;
-  std::stable_sort(ordered.begin(), ordered.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::vector<std::pair<TextPlace, std::string>> ordered = notes_;
+  std::stable_sort(ordered.begin(), ordered.end(), [&](const auto& a, const auto& b) {
+    return sources_->is_before(a.first, b.first);
+  });
   std::vector<SceneNote> notes;
-  for (auto& [line, message] : ordered) {
-    ScenePlace place = files_.place_of(line);
+  for (auto& [at, message] : ordered) {
+    ScenePlace place = sources_->place_of(at);
     message = place.told(std::move(message));
-    notes.push_back({place.line, std::move(message), std::move(place.file)});
+    notes.push_back({place, std::move(message), std::move(place.file)});
   }
   return notes;
 }

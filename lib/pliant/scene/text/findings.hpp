@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <set>
 #include <string>
 #include <tuple>
@@ -11,7 +12,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/scene/scene.hpp"
-#include "pliant/scene/text/defined_values.hpp"
+#include "pliant/scene/text/source_map.hpp"
 
 namespace pliant::xml {
 
@@ -19,33 +20,28 @@ namespace pliant::xml {
 /// first. All parts of reading have the same one, and ask it whether to end.
 class Findings {
  public:
-  explicit Findings(std::string file, StopRequest should_stop = {})
-      : files_(std::move(file)), should_stop_(std::move(should_stop)) {}
+  explicit Findings(std::shared_ptr<const SourceMap> sources, StopRequest should_stop = {})
+      : sources_(std::move(sources)), should_stop_(std::move(should_stop)) {}
+  /// About one file, and its text if that is known.
+  explicit Findings(std::string file, std::shared_ptr<const SourceText> text = {},
+                    StopRequest should_stop = {})
+      : Findings(std::make_shared<SourceMap>(std::move(file), std::move(text)),
+                 std::move(should_stop)) {}
   explicit Findings(const SceneOrigin& origin, StopRequest should_stop = {})
-      : files_(origin.files ? *origin.files : LineMap(origin.file)),
-        should_stop_(std::move(should_stop)) {}
+      : Findings(origin.sources ? origin.sources : std::make_shared<SourceMap>(origin.file),
+                 std::move(should_stop)) {}
   Findings(const Findings&) = delete;
   Findings& operator=(const Findings&) = delete;
 
-  /// From now on lines are those of the expanded text. A problem of a value that was made of
-  /// definitions also tells where they are.
-  void use(LineMap files, DefinedValues values = {}) {
-    files_ = std::move(files);
-    values_ = std::move(values);
-  }
+  const SourceMap& sources() const { return *sources_; }
 
-  void add_problem(int line, std::string message);
-  void add_note(int line, std::string message);
-
-  /// The same of a place that is known. Problems that are alike, in a file that is included several
-  /// times, are one.
-  void add_problem(ScenePlace place, std::string message);
+  /// Problems that are alike, on a line of a file that is included several times, are one.
+  void add_problem(const TextPlace& place, std::string message);
+  void add_problem(Error error);  ///< that has its place
+  void add_note(const TextPlace& place, std::string message);
 
   /// Counts a problem that follows from one that was added, and is not told.
   void add_consequence() { ++problem_count_; }
-
-  /// `line 5`, for a message at the line `from`: see `LineMap`.
-  std::string title_of(int line, int from) const { return files_.title_of(line, from); }
 
   /// The number of problems added. If it has not changed, the elements read in between have no
   /// problem.
@@ -76,22 +72,22 @@ class Findings {
   /// problem.
   Error to_error() const;
 
-  /// The notes in the order of lines.
+  /// The notes in the order of their places.
   std::vector<SceneNote> notes() const;
 
  private:
   static constexpr std::size_t most_compared = 50;
 
   bool is_full() const;
+  void list(Error error);
 
-  LineMap files_;
-  DefinedValues values_;
+  std::shared_ptr<const SourceMap> sources_;
   StopRequest should_stop_;
   StopPoll poll_{should_stop_};
   bool is_stopped_ = false;
   std::vector<Error> problems_;
   std::set<std::tuple<std::string, int, std::string>> included_;  // problems of included files
-  std::vector<std::pair<int, std::string>> notes_;                // lines of the expanded text
+  std::vector<std::pair<TextPlace, std::string>> notes_;
   std::size_t problem_count_ = 0;
   std::size_t bytes_ = 0;  // of messages
   std::int64_t copied_keys_ = 0;

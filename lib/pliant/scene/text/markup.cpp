@@ -15,9 +15,7 @@
 namespace pliant::xml {
 namespace {
 
-// Far above any real scene. Readers recurse once per level, and compare each attribute of an
-// element with all others.
-constexpr std::size_t deepest = 50;
+// Far above any real scene. Readers compare each attribute of an element with all others.
 constexpr std::size_t longest_name = 100;
 constexpr std::size_t most_attributes = 100;  // per element
 constexpr std::size_t longest_attribute = std::size_t{4} << 20U;
@@ -90,12 +88,16 @@ bool is_reference(std::string_view name) {
          is_xml_character(code_point);
 }
 
-/// Scans a text once, tag by tag. Places are offsets; lines are counted only for problems.
+/// Scans a text once, tag by tag. Places are offsets.
 class MarkupScanner {
  public:
-  MarkupScanner(std::string_view text, Findings& findings, std::size_t most,
+  MarkupScanner(Findings& findings, int text, std::size_t most,
                 std::span<const std::string_view> roots)
-      : text_(text), findings_(findings), lines_(text), most_(most), roots_(roots) {
+      : text_(findings.sources().text(text)),
+        findings_(findings),
+        index_(text),
+        most_(most),
+        roots_(roots) {
     if (stands(byte_order_mark)) at_ = byte_order_mark.size();
   }
 
@@ -147,15 +149,27 @@ class MarkupScanner {
     return true;
   }
   /// `<name> of line 3`.
-  std::string title(const ElementPlace& element) {
-    return fmt::format("<{}> of line {}", name_of(element), lines_.line_of(element.name.begin));
+  std::string title(const ElementPlace& element) const {
+    return fmt::format("<{}> of line {}", name_of(element), line_of(element.name.begin));
+  }
+
+  /// From an offset to the end of the tag or line.
+  TextPlace place_of(std::size_t where) const {
+    constexpr std::size_t longest = 200;
+    std::string_view part = text_.substr(where, longest);
+    part = part.substr(0, part.find_first_of("\r\n"));
+    part = part.substr(0, std::min(part.find('>'), part.size() - 1) + 1);
+    return {index_, range_of(part)};
+  }
+  int line_of(std::size_t where) const {
+    return findings_.sources().place_of(place_of(where)).line;
   }
 
   // Messages do not quote a file that is probably not a scene.
   void add(std::size_t where, std::string_view message) {
     const bool is_other = has_root() && !may_be_root(name_of(markup_.elements.front()));
     if (is_other && is_stopped_) return;
-    findings_.add_problem(lines_.line_of(where),
+    findings_.add_problem(place_of(where),
                           is_other ? fmt::format("malformed XML, and the root element is not {}",
                                                  roots_.empty() ? "<scene>" : "one of a scene")
                                    : fmt::format("malformed XML: {}", message));
@@ -175,7 +189,7 @@ class MarkupScanner {
 
   std::string_view text_;
   Findings& findings_;
-  LineCounter lines_;
+  int index_;                                // of the text
   std::size_t most_;                         // elements and attributes
   std::span<const std::string_view> roots_;  // empty: a scene
   std::size_t at_ = 0;
@@ -207,7 +221,7 @@ std::string_view MarkupScanner::take_until(std::string_view end, std::string_vie
   const std::size_t found = find_from(text_, end, at_, findings_);
   if (found == std::string_view::npos) {
     stop(text_.size(),
-         fmt::format("the file ends inside {} that begins at line {}", what, lines_.line_of(at_)));
+         fmt::format("the file ends inside {} that begins at line {}", what, line_of(at_)));
     return {};
   }
   const std::string_view taken = take(found - at_);
@@ -217,7 +231,7 @@ std::string_view MarkupScanner::take_until(std::string_view end, std::string_vie
 
 Markup MarkupScanner::scan() {
   if (const auto fault = find_encoding_fault(text_.substr(at_), findings_)) {
-    findings_.add_problem(lines_.line_of(at_ + fault->at), fault->message);
+    findings_.add_problem(place_of(at_ + fault->at), fault->message);
     is_stopped_ = true;
   }
   constexpr std::size_t parts_of_mark = 64;  // besides those of its bytes
@@ -249,7 +263,7 @@ void MarkupScanner::finish() {
                 fmt::format("the file ends inside {}, which is not closed", title(innermost())));
   if (has_root()) return;
   if (text_.find('<') == std::string_view::npos)
-    return findings_.add_problem(1, fmt::format("the file is empty{}", one_root()));
+    return findings_.add_problem(place_of(0), fmt::format("the file is empty{}", one_root()));
   stop(at_, fmt::format("the file contains no element{}", one_root()));
 }
 
@@ -353,8 +367,7 @@ void MarkupScanner::scan_opening_tag() {
       {.name = range_of(name),
        .parent = open_.empty() ? ElementPlace::no_parent : open_.back(),
        .first_attribute = static_cast<std::uint32_t>(markup_.attributes.size())});
-  if (open_.size() >= deepest)
-    return stop(start, fmt::format("<{}> is nested deeper than {} elements", name, deepest));
+  if (open_.size() >= deepest_element) return stop(start, nested_too_deep(name));
   if (is_over_limit(start)) return;
 
   ElementPlace& element = markup_.elements.back();
@@ -415,7 +428,7 @@ bool MarkupScanner::scan_attribute() {
   if (closing == std::string_view::npos)
     return refuse(text_.size(),
                   fmt::format("the file ends inside the value of {} in <{}> of line {}",
-                              in_quotes(name), owner, lines_.line_of(start)));
+                              in_quotes(name), owner, line_of(start)));
   if (value.size() > longest_attribute)
     return refuse(start, fmt::format("the value of {} in <{}> has more than {} MiB",
                                      in_quotes(name), owner, longest_attribute >> 20U));
@@ -454,6 +467,18 @@ std::span<const AttributePlace> Markup::attributes_of(std::size_t element) const
   return std::span(attributes).subspan(first, last - first);
 }
 
+const AttributePlace* Markup::attribute_of(std::size_t element, std::string_view name,
+                                           std::string_view text) const {
+  const std::span<const AttributePlace> own = attributes_of(element);
+  const auto found =
+      std::ranges::find_if(own, [&](const auto& one) { return one.name.of(text) == name; });
+  return found == own.end() ? nullptr : &*found;
+}
+
+std::string nested_too_deep(std::string_view element) {
+  return fmt::format("<{}> is nested deeper than {} elements", element, deepest_element);
+}
+
 std::size_t Markup::after(std::size_t element) const {
   const std::size_t next = element + 1;
   const std::uint32_t end = elements[element].end;
@@ -464,11 +489,11 @@ std::size_t Markup::after(std::size_t element) const {
   return static_cast<std::size_t>(found - elements.begin());
 }
 
-std::optional<Markup> scan_markup(std::string_view text, Findings& findings, std::size_t most,
+std::optional<Markup> scan_markup(Findings& findings, int text, std::size_t most,
                                   std::span<const std::string_view> roots) {
-  PLIANT_EXPECTS(text.size() < ElementPlace::no_parent);
+  PLIANT_EXPECTS(findings.sources().text(text).size() < ElementPlace::no_parent);
   const std::size_t problems_before = findings.problem_count();
-  Markup markup = MarkupScanner(text, findings, most, roots).scan();
+  Markup markup = MarkupScanner(findings, text, most, roots).scan();
   if (findings.problem_count() != problems_before) return std::nullopt;
   return markup;
 }
@@ -479,8 +504,8 @@ Result<Markup> markup_of(std::string_view text, const std::string& name,
     return fail(ErrorCode::InvalidInput,
                 fmt::format("the scene would be larger than {} MiB", largest_scene_file >> 20U),
                 name);
-  Findings findings(name, should_stop);
-  auto markup = scan_markup(text, findings);
+  Findings findings(name, SourceText::of(text), should_stop);
+  auto markup = scan_markup(findings);
   if (!markup) return fail(findings.to_error());
   return *std::move(markup);
 }

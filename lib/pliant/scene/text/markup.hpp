@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,14 +14,6 @@ namespace pliant::xml {
 
 /// With which some programs begin a file in UTF-8.
 inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
-/// The bytes of a text from `begin` up to, but not including, `end`.
-struct TextRange {
-  std::uint32_t begin = 0;
-  std::uint32_t end = 0;
-
-  std::string_view of(std::string_view text) const { return text.substr(begin, end - begin); }
-};
 
 /// Where an attribute stands in a text.
 struct AttributePlace {
@@ -43,6 +36,11 @@ struct ElementPlace {
   TextRange opening_tag() const { return {name.begin - 1, tag_end}; }  ///< from < to >
   TextRange whole() const { return {name.begin - 1, end}; }
   bool closes_itself() const { return end == tag_end; }  ///< `<name/>`
+  /// Between its tags.
+  TextRange content_in(std::string_view text) const {
+    if (closes_itself()) return {end, end};
+    return {tag_end, static_cast<std::uint32_t>(text.rfind('<', end - 1))};
+  }
 };
 
 /// The places of all elements and attributes of a text, in document order: an element is before
@@ -52,21 +50,27 @@ struct Markup {
   std::vector<AttributePlace> attributes;
 
   std::span<const AttributePlace> attributes_of(std::size_t element) const;
+  /// The attribute of that name; null: the element does not have it.
+  const AttributePlace* attribute_of(std::size_t element, std::string_view name,
+                                     std::string_view text) const;
   /// The index of the first element behind the end of one.
   std::size_t after(std::size_t element) const;
 };
 
+/// Far above any real scene. Readers recurse once per level.
+inline constexpr std::size_t deepest_element = 50;
+std::string nested_too_deep(std::string_view element);
+
 /// The most elements and attributes of a scene file.
 inline constexpr std::size_t most_markup = 20'000'000;
 
-/// Scans a text: well-formed XML with one root element, and of a size that can be read, so with at
-/// most `most` elements and attributes. It may begin with a byte order mark. Each problem has its
-/// line. Null if there was one, or if reading is to end. Requires: fewer than 4 GiB.
+/// Scans a text of the findings: well-formed XML with one root element, and of a size that can be
+/// read, so with at most `most` elements and attributes. It may begin with a byte order mark. Null
+/// if there was a problem, or if reading is to end. Requires: fewer than 4 GiB.
 ///
 /// `roots`: the elements that the root may be, of a file that a scene includes; empty: it is a
 /// scene. The messages quote nothing of a file with another root.
-std::optional<Markup> scan_markup(std::string_view text, Findings& findings,
-                                  std::size_t most = most_markup,
+std::optional<Markup> scan_markup(Findings& findings, int text = 0, std::size_t most = most_markup,
                                   std::span<const std::string_view> roots = {});
 
 /// The places of a text that is to be a scene file, whose `name` is that in messages. Errors:
@@ -84,24 +88,5 @@ std::size_t find_from(std::string_view text, std::string_view what, std::size_t 
 /// Where the first character is that is no blank, otherwise the end of the text. A place before it
 /// if reading is to end.
 std::size_t first_not_blank(std::string_view text, std::size_t at, Findings& findings);
-
-/// Lines and columns of offsets in a text, counted from 1, in any order: the text is read once.
-class LineCounter {
- public:
-  explicit LineCounter(std::string_view text) : text_(text) {}
-
-  int line_of(std::size_t offset);
-  int column_of(std::size_t offset) const;  ///< in bytes, after the byte order mark
-
- private:
-  static constexpr std::size_t block_size = 1024;  // bytes
-
-  int count(std::size_t from, std::size_t to) const;
-
-  std::string_view text_;
-  std::vector<int> lines_ = {1};  // of the first byte of each block, up to the last that was needed
-  std::size_t counted_ = 0;       // the last offset
-  int line_ = 1;                  // its line
-};
 
 }  // namespace pliant::xml
