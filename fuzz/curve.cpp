@@ -150,7 +150,7 @@ bool is_same(const CurveKeys<D>& a, const CurveKeys<D>& b) {
 
 /// Keys of the same curve, or an error.
 template <int D>
-void check_edit(const tl::expected<Curve<D>, CurveError>& edited) {
+void check_edit(const Checked<Curve<D>>& edited) {
   if (!edited) return check_line(edited.error().message);
   const CurveKeys<D>& keys = edited->keys();
   for (std::size_t k = 1; k < keys.keys.size(); ++k)
@@ -227,7 +227,7 @@ void check(Input& input) {
   const CurveKeys<D> keys = any_keys<D>(input);
   const auto curve = Curve<D>::make(keys);
   if (!curve) {
-    require(curve.error().key <= keys.keys.size());
+    require(curve.error().index <= keys.keys.size());
     return check_line(curve.error().message);
   }
   require(is_same(curve->keys(), keys));

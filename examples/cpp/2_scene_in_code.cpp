@@ -47,7 +47,7 @@ int main() {
                 {.frame = 6, .value = {4000}},
                 {.frame = 12, .value = {0}, .left = pliant::Value<1>{4000}}}});
   if (!push) {
-    std::fprintf(stderr, "key %zu: %s\n", push.error().key, push.error().message.c_str());
+    std::fprintf(stderr, "key %zu: %s\n", push.error().index, push.error().message.c_str());
     return 2;
   }
   pliant::Force poke;  // a point force unless its shape is another

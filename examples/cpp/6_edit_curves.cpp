@@ -13,8 +13,8 @@ void print(const char* what, const pliant::Curve<1>& curve) {
   std::printf("\n");
 }
 
-int tell(const pliant::CurveError& error) {
-  std::fprintf(stderr, "key %zu: %s\n", error.key, error.message.c_str());
+int tell(const pliant::Complaint& error) {
+  std::fprintf(stderr, "key %zu: %s\n", error.index, error.message.c_str());
   return 2;
 }
 

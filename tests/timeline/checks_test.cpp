@@ -22,7 +22,7 @@ Fault fault_of(const CurveKeys<1>& keys) {
   const auto curve = Curve<1>::make(keys);
   REQUIRE(!curve);
   CHECK(curve.error().message.find('\n') == std::string::npos);
-  return {curve.error().key, curve.error().message};
+  return {curve.error().index, curve.error().message};
 }
 
 #define CHECK_FAULT(index, text, ...)   \

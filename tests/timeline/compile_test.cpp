@@ -41,13 +41,13 @@ TEST_CASE("each correction is noted with key, old and new length", "[timeline][c
 TEST_CASE("overshoot = error refuses and blames the longer tangent", "[timeline][compile]") {
   const auto out = Curve<1>::make(bold(25, 5, Overshoot::Error));
   REQUIRE(!out);
-  CHECK(out.error().key == 0);
+  CHECK(out.error().index == 0);
   CHECK(out.error().message ==
         "out tangent reaches 25 frames into a segment of 10 frames: time would run backwards, "
         "which overshoot=\"error\" does not allow");
   const auto in = Curve<1>::make(bold(5, 25, Overshoot::Error));
   REQUIRE(!in);
-  CHECK(in.error().key == 1);
+  CHECK(in.error().index == 1);
   CHECK(Curve<1>::make(bold(10, 10, Overshoot::Error)).has_value());
 }
 

@@ -377,7 +377,9 @@ TEST_CASE("a curve of many keys can be stopped while it is made", "[timeline][cu
   testing::check_stops(
       [&](const StopRequest& should_stop) -> Result<void> {
         const auto made = Curve<3>::make(keys, should_stop);
-        if (!made) return made.error().is_interruption ? interrupted() : invalid("no curve");
+        if (!made)
+          return made.error().kind == Complaint::Kind::Interrupted ? interrupted()
+                                                                   : invalid("no curve");
         return {};
       },
       40);

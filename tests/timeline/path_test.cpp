@@ -180,13 +180,13 @@ TEST_CASE("waypoints that make no path are told", "[timeline][path]") {
     REQUIRE_FALSE(path);
     return path.error();
   };
-  CHECK(error({}).waypoint == 0);
+  CHECK(error({}).index == 0);
   CHECK(error({{0, 0, 0}, {1, 0, 0}}).message == "a path must have at least three waypoints");
-  CHECK(error({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}).waypoint == 2);
-  CHECK(error({{0, 0, 0}, {1, nan, 0}, {2, 0, 0}}).waypoint == 1);
-  CHECK(error({{0, 0, 0}, {1, 1e151, 0}, {2, 0, 0}}).waypoint == 1);
-  CHECK(error({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, true).waypoint == 0);
-  CHECK(error(Places(Path::most_waypoints + 1)).waypoint == Path::most_waypoints + 1);
+  CHECK(error({{0, 0, 0}, {1, 0, 0}, {1, 0, 0}}).index == 2);
+  CHECK(error({{0, 0, 0}, {1, nan, 0}, {2, 0, 0}}).index == 1);
+  CHECK(error({{0, 0, 0}, {1, 1e151, 0}, {2, 0, 0}}).index == 1);
+  CHECK(error({{0, 0, 0}, {1, 0, 0}, {0, 0, 0}}, true).index == 0);
+  CHECK(error(Places(Path::most_waypoints + 1)).index == Path::most_waypoints + 1);
 }
 
 TEST_CASE("whatever the timing, a position stays on its path", "[timeline][position]") {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -46,15 +47,39 @@ struct Error {
   TextSpan span() const { return {line, column, end_line, end_column}; }
 };
 
+/// Why a value cannot be used. It knows of no file: words that follow what names the value, such as
+/// `<grid> width="1,5": `.
+struct Complaint {
+  enum class Kind {
+    Value,
+    Syntax,       ///< the text may not be meant as such a value
+    Interrupted,  ///< the caller asked to stop; nothing is wrong
+  };
+
+  std::size_t index = 0;  ///< of the part that is wrong: a key, a waypoint
+  std::string message;    ///< one line: the value, the rule
+  Kind kind = Kind::Value;
+  std::string part = {};  ///< the attribute that is wrong, as the scene format calls it
+};
+
 /// A value, or the error that explains why there is none: a `tl::expected` that must not be
 /// discarded.
-template <class T>
-class [[nodiscard]] Result : public tl::expected<T, Error> {
+template <class T, class E = Error>
+class [[nodiscard]] Result : public tl::expected<T, E> {
  public:
-  using tl::expected<T, Error>::expected;
+  using tl::expected<T, E>::expected;
   Result() = default;
-  Result(tl::expected<T, Error> result) : tl::expected<T, Error>(std::move(result)) {}
+  Result(tl::expected<T, E> result) : tl::expected<T, E>(std::move(result)) {}
 };
+
+/// A value, or what is wrong with what it was to be made of.
+template <class T>
+using Checked = Result<T, Complaint>;
+
+/// A `Complaint` to return from a function that returns what is checked.
+inline tl::unexpected<Complaint> refused(std::string message, std::size_t index = 0) {
+  return tl::unexpected(Complaint{index, std::move(message)});
+}
 
 /// An `Error` to return from a function that returns a `Result`.
 inline tl::unexpected<Error> fail(ErrorCode code, std::string message, std::string file = {},

@@ -131,7 +131,7 @@ Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
                                      D == 3 ? "single numbers" : "vectors of three numbers",
                                      D == 3 ? "vectors" : "single numbers"));
   const auto curve = Curve<D>::make(keys, draft_.should_stop());
-  if (!curve && curve.error().is_interruption) return interrupted();
+  if (!curve && curve.error().kind == Complaint::Kind::Interrupted) return interrupted();
   if (!curve) return draft_.refuse(fmt::format("{}: {}", spot.path, curve.error().message));
   if (on_path(spot)) return curve_of(spot).map([](const auto&) {});
   if (const auto old = animated(spot)) {

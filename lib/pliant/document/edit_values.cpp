@@ -57,7 +57,7 @@ Result<void> Editor::operator()(const Set& set) {
 Result<std::string> Editor::with_component(const Spot& spot, const std::string& value) const {
   constexpr std::size_t components = 3;
   if (const auto number = xml::parse_number(value); !number)
-    return draft_.refuse(fmt::format("{}: {}", spot.path, number.error()));
+    return draft_.refuse(fmt::format("{}: {}", spot.path, number.error().message));
   auto whole = constant(spot);
   if (!whole) {
     whole.error().message += "; a component is set of a constant vector only";

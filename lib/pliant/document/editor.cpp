@@ -139,7 +139,7 @@ Result<Spot> Editor::spot(const std::string& given) const {
                                       return formats;
                                     }},
                                path);
-  if (!at) return draft_.refuse(at.error());
+  if (!at) return draft_.refuse(at.error().message);
   if (at->path.is_of_path()) return spot_on_path(path, *object, at->path.attribute, at->path.part);
   Spot spot{.path = at->path.title(),
             .object = *object,

@@ -298,7 +298,7 @@ class BlenderReader : private JsonReader {
   std::optional<Curve<1>> made(const CurveKeys<1>& keys) {
     auto curve = Curve<1>::make(keys, reading_.should_stop);
     if (curve) return *std::move(curve);
-    if (curve.error().is_interruption)
+    if (curve.error().kind == Complaint::Kind::Interrupted)
       end();
     else
       refuse("keys", fmt::format("are not a curve: {}", curve.error().message));

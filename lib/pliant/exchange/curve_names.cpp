@@ -32,9 +32,9 @@ std::pair<std::string, std::string> split_channel(const std::string& channel) {
   return {channel.substr(0, dot), channel.substr(dot + 1)};
 }
 
-Error error_of(const CurveError& error, const std::string& name, int line) {
-  if (error.is_interruption) return interrupted().value();
-  return {.message = name.empty() ? error.message : fmt::format("{}: {}", name, error.message),
+Error error_of(const Complaint& wrong, const std::string& name, int line) {
+  if (wrong.kind == Complaint::Kind::Interrupted) return interrupted().value();
+  return {.message = name.empty() ? wrong.message : fmt::format("{}: {}", name, wrong.message),
           .line = line};
 }
 

@@ -24,7 +24,7 @@ std::string component_suffix(int component);
 void name_curve(FileCurve& curve, CurveNames& names);
 
 /// Why keys are no curve, about `name` unless it is empty; Interrupted.
-Error error_of(const CurveError& error, const std::string& name, int line = 0);
+Error error_of(const Complaint& wrong, const std::string& name, int line = 0);
 
 /// Whether copies show a jump where they meet, on whose frame programs differ.
 bool jumps_at_seam(const CurveKeys<1>& keys);

@@ -445,7 +445,7 @@ class MayaReader {
     if (head.output == "angular") curve.unit = CurveUnit::Degrees;
     if (head.output == "linear") curve.unit = CurveUnit::Length;
     if (const auto made = Curve<1>::make(curve.keys, reading_.should_stop); !made) {
-      const std::size_t key = made.error().key;
+      const std::size_t key = made.error().index;
       return fail(error_of(made.error(), curve.name,
                            key < written.size() ? written[key].line : words_.line()));
     }

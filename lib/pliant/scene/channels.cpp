@@ -29,7 +29,7 @@ std::vector<NamedChannel> channels_of(const Scene& scene) {
 
 std::string no_channel(const Scene& scene, std::string_view path) {
   const auto at = xml::resolve(xml::scope_of(scene), path);
-  if (!at) return at.error();
+  if (!at) return at.error().message;
   const std::string progress = fmt::format("{}.progress", at->path.title());
   const auto is_it = [&](const NamedChannel& channel) { return channel.path == progress; };
   return fmt::format("{} is not a channel{}", in_quotes(path),

@@ -64,7 +64,7 @@ TEST_CASE("a path that leads nowhere is told with the nearest", "[scene][changes
   for (const auto& [path, complaint] : rows) {
     const auto at = slot_at(scene, path);
     REQUIRE_FALSE(at);
-    CHECK(at.error() == complaint);
+    CHECK(at.error().message == complaint);
   }
 }
 
@@ -82,8 +82,8 @@ TEST_CASE("paths lead into forces and meshes of a program", "[scene][changes]") 
   CHECK(
       slot_at(scene, "poke.magnitud")
           .error()
-          .starts_with(
+          .message.starts_with(
               R"("poke" has no attribute "magnitud"; did you mean "magnitude"? allowed: name, enabled)"));
-  CHECK(slot_at(scene, "sheet.columns").error().starts_with(R"("sheet" has no attribute)"));
+  CHECK(slot_at(scene, "sheet.columns").error().message.starts_with(R"("sheet" has no attribute)"));
   CHECK(no_channel(scene, "poke.center").starts_with(R"("poke" has no attribute "center")"));
 }

@@ -67,10 +67,10 @@ TEST_CASE("a tangent takes one number or three", "[scene][slot]") {
   CHECK(std::get<Channel<1>>(place).at(1) == Value<1>{0.5});
   REQUIRE(row.read("0 2 0"));
   CHECK(std::get<Channel<3>>(place).at(1) == Value<3>{0, 2, 0});
-  CHECK(row.read("0 1").error() == "one or three numbers are required");
-  CHECK(row.read("").error() == "one or three numbers are required");
-  CHECK_THAT(row.read("x").error(), contains_text("not a number"));
-  CHECK_THAT(row.read("0 1 x").error(), contains_text("not a number"));
+  CHECK(row.read("0 1").error().message == "one or three numbers are required");
+  CHECK(row.read("").error().message == "one or three numbers are required");
+  CHECK_THAT(row.read("x").error().message, contains_text("not a number"));
+  CHECK_THAT(row.read("0 1 x").error().message, contains_text("not a number"));
 }
 
 TEST_CASE("a word of a later version differs from a misspelt one", "[scene][slot]") {
@@ -81,13 +81,13 @@ TEST_CASE("a word of a later version differs from a misspelt one", "[scene][slot
   CHECK(row.text == "exact");
   REQUIRE(row.read(" overshoot "));
   CHECK(stepping == Stepping::Overshoot);
-  CHECK(row.read("adaptive").error() ==
+  CHECK(row.read("adaptive").error().message ==
         "is not supported by this version of pliant; allowed: exact, overshoot");
-  CHECK(row.read("overshot").error() ==
+  CHECK(row.read("overshot").error().message ==
         "unknown word; did you mean \"overshoot\"? allowed: exact, overshoot");
-  CHECK(row.read("Exact").error() ==
+  CHECK(row.read("Exact").error().message ==
         "unknown word; did you mean \"exact\"? allowed: exact, overshoot");
-  CHECK(row.read("").error() == "unknown word; allowed: exact, overshoot");
+  CHECK(row.read("").error().message == "unknown word; allowed: exact, overshoot");
   CHECK(stepping == Stepping::Overshoot);
 }
 
@@ -96,9 +96,9 @@ TEST_CASE("a list of names holds each once", "[scene][slot]") {
   const Slot row = slot(targets_attribute, &targets);
   REQUIRE(row.read(" sheet\n body "));
   CHECK(targets == std::vector<std::string>{"sheet", "body"});
-  CHECK_THAT(row.read("").error(), contains_text("leave the attribute out"));
-  CHECK_THAT(row.read("sheet,body").error(), contains_text("\"sheet,body\" is not a name"));
-  CHECK_THAT(row.read("sheet sheet").error(), contains_text("\"sheet\" is given twice"));
+  CHECK_THAT(row.read("").error().message, contains_text("leave the attribute out"));
+  CHECK_THAT(row.read("sheet,body").error().message, contains_text("\"sheet,body\" is not a name"));
+  CHECK_THAT(row.read("sheet sheet").error().message, contains_text("\"sheet\" is given twice"));
 }
 
 }  // namespace

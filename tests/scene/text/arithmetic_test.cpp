@@ -47,7 +47,7 @@ class WrittenValue {
 std::string computed(std::string_view written) {
   const auto result = WrittenValue().text(written).result();
   if (!result) return "no";
-  return result->has_value() ? **result : "fault: " + result->error().complaint;
+  return result->has_value() ? **result : "fault: " + result->error().message;
 }
 
 TEST_CASE("arithmetic in a value", "[scene][arithmetic]") {
@@ -121,7 +121,7 @@ TEST_CASE("definitions in arithmetic", "[scene][arithmetic]") {
   const auto text_of = [](const WrittenValue& value) {
     const auto result = value.result();
     if (!result) return std::string("no");
-    return result->has_value() ? **result : "fault: " + result->error().complaint;
+    return result->has_value() ? **result : "fault: " + result->error().message;
   };
   CHECK(text_of(WrittenValue().definition("2").text(" * 3")) == "6");
   CHECK(text_of(WrittenValue().text("-").definition("2")) == "-2");
@@ -280,7 +280,7 @@ TEST_CASE("arithmetic agrees with a second implementation", "[scene][arithmetic]
     REQUIRE(numbers);
     if (!numbers->has_value()) {
       // Also where an infinity between would vanish, as in 1 / (1 / 0).
-      CHECK_THAT(numbers->error().complaint,
+      CHECK_THAT(numbers->error().message,
                  contains_text("divided by 0") || contains_text("not finite"));
       ++faults;
       continue;

@@ -80,7 +80,7 @@ TEST_CASE("what is no number in the C locale is a complaint that says why", "[sc
   for (const Row& row : rows) {
     CAPTURE(row.text);
     REQUIRE_FALSE(parse_number(row.text));
-    CHECK_THAT(parse_number(row.text).error(), contains_text(row.complaint));
+    CHECK_THAT(parse_number(row.text).error().message, contains_text(row.complaint));
   }
 }
 
@@ -93,18 +93,18 @@ TEST_CASE("a vector is as many numbers as asked for, between XML blanks", "[scen
     CHECK_FALSE(parse_numbers(text, vector));
     CHECK(vector == std::array<double, 3>{1, 2.5, -3});
   }
-  CHECK(parse_numbers("1 2", vector).error() ==
+  CHECK(parse_numbers("1 2", vector).error().message ==
         "three numbers are required, not 2 (separated by spaces)");
-  CHECK_THAT(parse_numbers("1 2 x", vector).error(), contains_text("\"x\": not a number"));
+  CHECK_THAT(parse_numbers("1 2 x", vector).error().message, contains_text("\"x\": not a number"));
   for (const std::string text :
        {"1,-2.5,3e7", "1, -2.5, 3e7", "(1 -2.5 3e7)", "[1;-2.5; 3e7]", "1 , -2.5 3e7"}) {
     CAPTURE(text);
-    CHECK(parse_numbers(text, vector).error() ==
+    CHECK(parse_numbers(text, vector).error().message ==
           "numbers are separated by blanks alone: \"1 -2.5 3e7\"");
   }
   // Commas within the numbers.
   for (const std::string text : {"1,5 2,5 3,5", "1,5 2 3"})
-    CHECK_THAT(parse_numbers(text, vector).error(),
+    CHECK_THAT(parse_numbers(text, vector).error().message,
                contains_text("write the decimal point as \".\""));
 }
 
@@ -116,9 +116,9 @@ TEST_CASE("an integer has neither point nor exponent and stays in range", "[scen
     CAPTURE(text);
     CHECK_FALSE(parse_integer(text, -100, 100));
   }
-  CHECK_THAT(parse_integer("1.0", 0, 9).error(), contains_text("not a whole number"));
-  CHECK_THAT(parse_integer("10", 0, 9).error(), contains_text("at most 9"));
-  CHECK_THAT(parse_integer("-1", 0, 9).error(), contains_text("at least 0"));
+  CHECK_THAT(parse_integer("1.0", 0, 9).error().message, contains_text("not a whole number"));
+  CHECK_THAT(parse_integer("10", 0, 9).error().message, contains_text("at most 9"));
+  CHECK_THAT(parse_integer("-1", 0, 9).error().message, contains_text("at least 0"));
 }
 
 TEST_CASE("a seed has all 64 bits and no sign", "[scene][text]") {

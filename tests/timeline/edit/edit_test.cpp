@@ -423,7 +423,7 @@ TEST_CASE("deleting keys at once is deleting one after the other", "[timeline][e
     std::vector<std::size_t> deleted;
     for (std::size_t k = 0; k < curve.keys().keys.size(); ++k)
       if (whim.between(0, 1) < 0.4) deleted.push_back(k);
-    tl::expected<Curve<1>, CurveError> one_by_one = curve;
+    Checked<Curve<1>> one_by_one = curve;
     for (std::size_t k = 0; k < deleted.size() && one_by_one; ++k)
       one_by_one = delete_key(*one_by_one, deleted[k] - k);
     const auto at_once = delete_keys(curve, deleted);
@@ -492,7 +492,7 @@ TEST_CASE("edits that cannot be are refused with the reason", "[timeline][edit]"
   check_error(insert_key(curve, nan), "must be finite");
   check_error(insert_key(curve, infinity), "must be finite");
   check_error(insert_key(curve, 7), "has the easing sineIn");
-  CHECK(insert_key(curve, 7).error().key == 1);
+  CHECK(insert_key(curve, 7).error().index == 1);
   CurveKeys<1> repeats = curve.keys();
   repeats.after.kind = OutsideKind::Repeat;
   check_error(insert_key(make(repeats), 12), "after shows copies");
@@ -537,7 +537,7 @@ TEST_CASE("edits that cannot be are refused with the reason", "[timeline][edit]"
   held.after.kind = OutsideKind::Repeat;
   held.after.count = 2;
   check_error(reverse(make(held), 0), "jumps, and a side that repeats keeps its value");
-  CHECK(reverse(make(held), 0).error().key == 2);
+  CHECK(reverse(make(held), 0).error().index == 2);
 }
 
 }  // namespace

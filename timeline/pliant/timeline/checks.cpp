@@ -37,15 +37,15 @@ class Checker {
     if (!holds) fail(message());
   }
 
-  std::optional<CurveError> error() const { return error_; }
+  std::optional<Complaint> error() const { return error_; }
 
  private:
   void fail(std::string message) {
-    if (!error_) error_ = CurveError{key_, std::move(message)};
+    if (!error_) error_ = Complaint{key_, std::move(message)};
   }
 
   std::size_t key_ = 0;
-  std::optional<CurveError> error_;
+  std::optional<Complaint> error_;
 };
 
 template <int D>
@@ -119,7 +119,7 @@ void check_loop(const CurveKeys<D>& keys, Checker& check) {
 }  // namespace
 
 template <int D>
-std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
+std::optional<Complaint> broken_rule(const CurveKeys<D>& keys) {
   Checker check;
   check.rule(!keys.keys.empty(), [] { return "the curve has no keys; it must have at least one"; });
   for (std::size_t k = 0; k < keys.keys.size() && !check.error(); ++k) {
@@ -154,7 +154,7 @@ std::optional<CurveError> broken_rule(const CurveKeys<D>& keys) {
   return check.error();
 }
 
-template std::optional<CurveError> broken_rule(const CurveKeys<1>&);
-template std::optional<CurveError> broken_rule(const CurveKeys<3>&);
+template std::optional<Complaint> broken_rule(const CurveKeys<1>&);
+template std::optional<Complaint> broken_rule(const CurveKeys<3>&);
 
 }  // namespace pliant::timeline

@@ -13,9 +13,9 @@ inline constexpr double largest_number = 1e150;
 
 /// The first rule that the keys of an author break, if any: see `Curve::make`.
 template <int D>
-std::optional<CurveError> broken_rule(const CurveKeys<D>& keys);
+std::optional<Complaint> broken_rule(const CurveKeys<D>& keys);
 
-extern template std::optional<CurveError> broken_rule(const CurveKeys<1>&);
-extern template std::optional<CurveError> broken_rule(const CurveKeys<3>&);
+extern template std::optional<Complaint> broken_rule(const CurveKeys<1>&);
+extern template std::optional<Complaint> broken_rule(const CurveKeys<3>&);
 
 }  // namespace pliant::timeline

@@ -26,8 +26,8 @@ constexpr double largest_rate = 1e305;
 // and so rounded to a few of the least numbers.
 constexpr double shortest_bent = 0x1p-900;
 
-tl::unexpected<CurveError> interruption() {
-  return tl::unexpected(CurveError{.message = "interrupted", .is_interruption = true});
+tl::unexpected<Complaint> interruption() {
+  return tl::unexpected(Complaint{.message = "interrupted", .kind = Complaint::Kind::Interrupted});
 }
 
 /// The subject of a note. Copies of a key by the loop repeat its notes; only one of each is kept.
@@ -43,7 +43,7 @@ class Compiler {
         noted_(author.keys.size()),
         notes_(std::move(written_.notes)) {}
 
-  tl::expected<Compiled<D>, CurveError> compile() {
+  Checked<Compiled<D>> compile() {
     for (int c = 0; c < D; ++c) {
       if (!find_slopes(c) || is_stopped(should_stop_)) return interruption();
     }
@@ -76,7 +76,7 @@ class Compiler {
   }
 
   void fail(std::size_t key, std::string message) {
-    if (!error_) error_ = CurveError{written_.origin_of(key), std::move(message)};
+    if (!error_) error_ = Complaint{written_.origin_of(key), std::move(message)};
   }
 
   bool find_slopes(int c) {  // false: it is stopped
@@ -324,7 +324,7 @@ class Compiler {
   const StopRequest& should_stop_;
   std::vector<std::array<bool, static_cast<std::size_t>(Subject::Count)>> noted_;
   std::vector<CurveNote> notes_;
-  std::optional<CurveError> error_;
+  std::optional<Complaint> error_;
   std::vector<Value<D>> in_;   // slopes of the `in` tangents
   std::vector<Value<D>> out_;  // and of the `out` tangents
   Compiled<D> compiled_;
@@ -333,8 +333,7 @@ class Compiler {
 }  // namespace
 
 template <int D>
-tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys,
-                                              const StopRequest& should_stop) {
+Checked<Compiled<D>> compile(const CurveKeys<D>& keys, const StopRequest& should_stop) {
   if (const auto error = broken_rule(keys)) return tl::unexpected(*error);
   auto written = written_out(keys);
   if (!written) return tl::unexpected(written.error());
@@ -342,7 +341,7 @@ tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys,
   return Compiler<D>(keys, *std::move(written), should_stop).compile();
 }
 
-template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&, const StopRequest&);
-template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&, const StopRequest&);
+template Checked<Compiled<1>> compile(const CurveKeys<1>&, const StopRequest&);
+template Checked<Compiled<3>> compile(const CurveKeys<3>&, const StopRequest&);
 
 }  // namespace pliant::timeline

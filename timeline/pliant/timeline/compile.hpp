@@ -2,8 +2,7 @@
 
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/extrapolated.hpp"
@@ -22,12 +21,10 @@ struct Compiled {
 
 /// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.
 template <int D>
-[[nodiscard]] tl::expected<Compiled<D>, CurveError> compile(const CurveKeys<D>& keys,
-                                                            const StopRequest& should_stop = {});
+[[nodiscard]] Checked<Compiled<D>> compile(const CurveKeys<D>& keys,
+                                           const StopRequest& should_stop = {});
 
-extern template tl::expected<Compiled<1>, CurveError> compile(const CurveKeys<1>&,
-                                                              const StopRequest&);
-extern template tl::expected<Compiled<3>, CurveError> compile(const CurveKeys<3>&,
-                                                              const StopRequest&);
+extern template Checked<Compiled<1>> compile(const CurveKeys<1>&, const StopRequest&);
+extern template Checked<Compiled<3>> compile(const CurveKeys<3>&, const StopRequest&);
 
 }  // namespace pliant::timeline

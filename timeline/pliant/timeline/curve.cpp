@@ -49,8 +49,7 @@ struct Curve<D>::Parts {
 };
 
 template <int D>
-tl::expected<Curve<D>, CurveError> Curve<D>::make(CurveKeys<D> keys,
-                                                  const StopRequest& should_stop) {
+Checked<Curve<D>> Curve<D>::make(CurveKeys<D> keys, const StopRequest& should_stop) {
   auto compiled = timeline::compile(keys, should_stop);
   if (!compiled) return tl::unexpected(compiled.error());
   return Curve(Parts{std::move(keys), *std::move(compiled)});

@@ -3,8 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/adjustment.hpp"
 #include "pliant/timeline/bounds.hpp"
@@ -45,8 +44,7 @@ class Curve {
   /// length, which counts as 0; a handle that points backwards, which is ignored; a tangent that
   /// `overshoot` changed; `left` after a step; a key hidden by the loop; a loop without copies.
   /// If it is stopped, an error that is an interruption.
-  [[nodiscard]] static tl::expected<Curve, CurveError> make(CurveKeys<D> keys,
-                                                            const StopRequest& should_stop = {});
+  [[nodiscard]] static Checked<Curve> make(CurveKeys<D> keys, const StopRequest& should_stop = {});
 
   Curve(const Curve&);  ///< shares its parts: of constant cost
   Curve(Curve&&) noexcept;

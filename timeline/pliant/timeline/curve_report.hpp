@@ -5,13 +5,6 @@
 
 namespace pliant {
 
-/// The reason why keys do not form a curve.
-struct CurveError {
-  std::size_t key = 0;           ///< index of the wrong key
-  std::string message;           ///< one line: the thing, the value, the rule
-  bool is_interruption = false;  ///< the work was stopped; no key is wrong
-};
-
 /// Something that the rules changed or that has no effect; legal, but worth reporting to the
 /// author.
 struct CurveNote {

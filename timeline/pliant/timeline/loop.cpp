@@ -29,7 +29,7 @@ Key<D> copy_of(Key<D> key, const Loop<D>& loop, double n) {
 }
 
 template <int D>
-std::optional<CurveError> fault_of_copies(const WrittenKeys<D>& written) {
+std::optional<Complaint> fault_of_copies(const WrittenKeys<D>& written) {
   const std::vector<Key<D>>& keys = written.keys;
   for (std::size_t k = 0; k < keys.size(); ++k) {
     double largest = std::fabs(keys[k].frame);
@@ -38,21 +38,21 @@ std::optional<CurveError> fault_of_copies(const WrittenKeys<D>& written) {
       for (const double value : *keys[k].left) largest = std::max(largest, std::fabs(value));
     }
     if (!(largest <= largest_number)) {
-      return CurveError{written.origin[k], "a copy of this key by the loop reaches " +
-                                               number_text(largest) + "; no number may exceed " +
-                                               number_text(largest_number)};
+      return Complaint{written.origin[k], "a copy of this key by the loop reaches " +
+                                              number_text(largest) + "; no number may exceed " +
+                                              number_text(largest_number)};
     }
     if (k == 0) continue;
     if (!(keys[k].frame > keys[k - 1].frame)) {
-      return CurveError{written.origin[k], "a copy of this key by the loop falls on frame " +
-                                               number_text(keys[k].frame) +
-                                               " together with the previous key; frames must "
-                                               "strictly increase, also after rounding"};
+      return Complaint{written.origin[k], "a copy of this key by the loop falls on frame " +
+                                              number_text(keys[k].frame) +
+                                              " together with the previous key; frames must "
+                                              "strictly increase, also after rounding"};
     }
     if (!Easing::is_sound(keys[k - 1].next, keys[k].frame - keys[k - 1].frame)) {
-      return CurveError{written.origin[k - 1],
-                        "period is " + number_text(*keys[k - 1].next.period) +
-                            "; the segment must not have more than 1e15 periods"};
+      return Complaint{written.origin[k - 1],
+                       "period is " + number_text(*keys[k - 1].next.period) +
+                           "; the segment must not have more than 1e15 periods"};
     }
   }
   return std::nullopt;
@@ -61,7 +61,7 @@ std::optional<CurveError> fault_of_copies(const WrittenKeys<D>& written) {
 }  // namespace
 
 template <int D>
-tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
+Checked<WrittenKeys<D>> written_out(const CurveKeys<D>& keys) {
   WrittenKeys<D> written;
   const bool has_copies = keys.loop && (keys.loop->before > 0 || keys.loop->after > 0);
   if (!has_copies) {
@@ -85,8 +85,8 @@ tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
   const double count = copies * static_cast<double>(looped.size());
   if (count > most_written_keys) {
     return tl::unexpected(
-        CurveError{looped.front(), "the loop writes out " + number_text(count) + " keys; at most " +
-                                       number_text(most_written_keys) + " are allowed"});
+        Complaint{looped.front(), "the loop writes out " + number_text(count) + " keys; at most " +
+                                      number_text(most_written_keys) + " are allowed"});
   }
 
   for (std::size_t k = 0; k < keys.keys.size(); ++k) {
@@ -109,7 +109,7 @@ tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys) {
   return written;
 }
 
-template tl::expected<WrittenKeys<1>, CurveError> written_out(const CurveKeys<1>&);
-template tl::expected<WrittenKeys<3>, CurveError> written_out(const CurveKeys<3>&);
+template Checked<WrittenKeys<1>> written_out(const CurveKeys<1>&);
+template Checked<WrittenKeys<3>> written_out(const CurveKeys<3>&);
 
 }  // namespace pliant::timeline

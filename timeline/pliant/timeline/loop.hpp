@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/key.hpp"
 
@@ -30,9 +29,9 @@ inline constexpr double most_written_keys = 1e6;
 /// loop"). Errors: more than `most_written_keys`; copies that rounding puts on one frame, or whose
 /// numbers exceed the limit of checks.hpp. Requires: broken_rule(keys) finds nothing.
 template <int D>
-[[nodiscard]] tl::expected<WrittenKeys<D>, CurveError> written_out(const CurveKeys<D>& keys);
+[[nodiscard]] Checked<WrittenKeys<D>> written_out(const CurveKeys<D>& keys);
 
-extern template tl::expected<WrittenKeys<1>, CurveError> written_out(const CurveKeys<1>&);
-extern template tl::expected<WrittenKeys<3>, CurveError> written_out(const CurveKeys<3>&);
+extern template Checked<WrittenKeys<1>> written_out(const CurveKeys<1>&);
+extern template Checked<WrittenKeys<3>> written_out(const CurveKeys<3>&);
 
 }  // namespace pliant::timeline

@@ -57,24 +57,24 @@ Value<3> chord_rate(const Value<3>& from, const Value<3>& to) {
   return {(to[0] - from[0]) / h, (to[1] - from[1]) / h, (to[2] - from[2]) / h};
 }
 
-std::optional<PathError> broken_rule(const std::vector<Value<3>>& waypoints, bool is_closed) {
+std::optional<Complaint> broken_rule(const std::vector<Value<3>>& waypoints, bool is_closed) {
   if (waypoints.size() < Path::least_waypoints) {
-    return PathError{waypoints.size(), "a path must have at least three waypoints"};
+    return Complaint{waypoints.size(), "a path must have at least three waypoints"};
   }
   if (waypoints.size() > Path::most_waypoints) {
-    return PathError{waypoints.size(), "a path must have at most 100000 waypoints"};
+    return Complaint{waypoints.size(), "a path must have at most 100000 waypoints"};
   }
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     for (const double x : waypoints[k]) {
       if (!(std::abs(x) <= timeline::largest_number)) {
-        return PathError{k, "has the coordinate " + timeline::number_text(x) +
+        return Complaint{k, "has the coordinate " + timeline::number_text(x) +
                                 ", which is not finite or beyond 1e150"};
       }
     }
     if (k == 0 && !is_closed) continue;
     const Value<3>& before = waypoints[k == 0 ? waypoints.size() - 1 : k - 1];
     if (!(distance(before, waypoints[k]) > 0)) {
-      return PathError{
+      return Complaint{
           k, k == 0
                  ? "is at the same position as the last one, from which a closed path returns to it"
                  : "is at the same position as the one before"};
@@ -85,7 +85,7 @@ std::optional<PathError> broken_rule(const std::vector<Value<3>>& waypoints, boo
 
 }  // namespace
 
-tl::expected<Path, PathError> Path::make(std::vector<Value<3>> waypoints, bool is_closed) {
+Checked<Path> Path::make(std::vector<Value<3>> waypoints, bool is_closed) {
   if (auto broken = broken_rule(waypoints, is_closed)) return tl::unexpected(*std::move(broken));
   const std::size_t count = waypoints.size();
   std::vector<Value<3>> rates(count);

@@ -5,19 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/cubic.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant {
-
-/// The reason why waypoints do not form a path.
-struct PathError {
-  std::size_t waypoint = 0;  ///< index of the wrong waypoint, or the number of waypoints if there
-                             ///< are too few or too many
-  std::string message;       ///< one line: the value, the rule
-};
 
 /// A smooth path through points in space, parametrised by arc length: an object that follows it
 /// stays on it for any timing. An immutable value, safe to share between threads.
@@ -34,8 +26,7 @@ class Path {
   /// Errors, naming the waypoint: fewer than three or more than 10^5; a number that is not finite
   /// or beyond 1e150; one in the same place as the one before, which for the first waypoint of a
   /// closed path is the last.
-  [[nodiscard]] static tl::expected<Path, PathError> make(std::vector<Value<3>> waypoints,
-                                                          bool is_closed = false);
+  [[nodiscard]] static Checked<Path> make(std::vector<Value<3>> waypoints, bool is_closed = false);
 
   /// The point after the share `progress` of the length: 0 is the first waypoint, 1 the last, or
   /// the first again on a closed path; clamped to [0, 1]. The share is accurate to 1e-12 [length].

@@ -19,10 +19,10 @@ struct DirectionNames {
   char attribute;  // of degreeU, samplesU
 };
 
-using NetCheck = tl::expected<void, NetProblem>;
+using NetCheck = Checked<void>;
 
-tl::unexpected<NetProblem> wrong(std::string part, std::string message) {
-  return tl::unexpected(NetProblem{std::move(part), std::move(message)});
+tl::unexpected<Complaint> wrong(std::string part, std::string message) {
+  return tl::unexpected(Complaint{.message = std::move(message), .part = std::move(part)});
 }
 
 constexpr DirectionNames names_u = {"columns", 'u', 'U'};
@@ -115,7 +115,7 @@ double entry_count(const NurbsNet& net) {
   return u * net.v.count * along_u + u * v * along_v;
 }
 
-tl::expected<WrittenSize, NetProblem> written_size(const NurbsNet& net) {
+Checked<WrittenSize> written_size(const NurbsNet& net) {
   const std::int64_t u = samples_of(net.u), v = samples_of(net.v);
   if (u * v > WrittenSize::most_vertices) {
     return wrong("samplesU",
@@ -167,7 +167,7 @@ bool is_summed_by_directions(const NurbsNet& net) {
   return (net.u.degree + 1.0) * (net.v.degree + 1.0) > most_points;
 }
 
-tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net) {
+Checked<WrittenSize> check_net(const NurbsNet& net) {
   if (auto checked = check_direction(net.u, names_u); !checked)
     return tl::unexpected(checked.error());
   if (auto checked = check_direction(net.v, names_v); !checked)

@@ -45,17 +45,12 @@ int samples_of(const NurbsDirection& direction);
 /// a vertex at once: where these are many, that takes too much memory.
 bool is_summed_by_directions(const NurbsNet& net);
 
-/// What is wrong with a net.
-struct NetProblem {
-  std::string part;  ///< as the scene format calls it: columns, degreeU, points, knots.v, ...
-  std::string message;
-};
-
-/// The size of the surface that a net is written as. Problems: a member outside of the range of its
+/// The size of the surface that a net is written as. Complaints, which name the part as the scene
+/// format calls it (columns, degreeU, points, knots.v, …): a member outside of the range of its
 /// comment; knots that fall, that span nothing or that lie too far apart, or of which more than
 /// `degree` are equal, at the ends more than degree + 1; knots of a closed direction; fewer than 2
 /// samples, closed 3; numbers that are not finite; a surface that is larger than `WrittenSize`
 /// allows, or has splines of a degree so high that they take too long.
-tl::expected<WrittenSize, NetProblem> check_net(const NurbsNet& net);
+Checked<WrittenSize> check_net(const NurbsNet& net);
 
 }  // namespace pliant

@@ -69,8 +69,8 @@ class Adjust {
   }
 
   Result<void> read(const Slot& slot) const {
-    if (const Reading<void> reading = slot.read(change_.text); !reading)
-      return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error()));
+    if (const Checked<void> reading = slot.read(change_.text); !reading)
+      return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error().message));
     return {};
   }
 
@@ -82,12 +82,12 @@ class Adjust {
   Result<void> close(PathMotion& motion) const {
     if (change_.kind != SceneChange::Kind::Set)
       return refuse(path_.title() + ".closed is no numeric channel");
-    const Reading<bool> is_closed = parse_boolean(trimmed(change_.text));
+    const Checked<bool> is_closed = parse_boolean(trimmed(change_.text));
     if (!is_closed)
-      return refuse(fmt::format("{}: {}", in_quotes(change_.text), is_closed.error()));
+      return refuse(fmt::format("{}: {}", in_quotes(change_.text), is_closed.error().message));
     auto path = Path::make(motion.path.waypoints(), *is_closed);
     if (!path)
-      return refuse(fmt::format("waypoint {} {}", path.error().waypoint + 1, path.error().message));
+      return refuse(fmt::format("waypoint {} {}", path.error().index + 1, path.error().message));
     motion.path = *std::move(path);
     return {};
   }
@@ -111,8 +111,9 @@ class Adjust {
     const bool is_factor = change_.kind == SceneChange::Kind::Times;
     const std::size_t count = component || is_factor ? 1 : std::size_t{D};
     std::array<double, 3> numbers = {};
-    const Reading<void> reading = parse_numbers(change_.text, std::span(numbers).first(count));
-    if (!reading) return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error()));
+    const Checked<void> reading = parse_numbers(change_.text, std::span(numbers).first(count));
+    if (!reading)
+      return refuse(fmt::format("{}: {}", in_quotes(change_.text), reading.error().message));
     const auto kind = is_factor                                 ? Adjustment::Kind::Times
                       : change_.kind == SceneChange::Kind::Plus ? Adjustment::Kind::Plus
                                                                 : Adjustment::Kind::Set;
@@ -177,7 +178,7 @@ Result<void> settle(const NamedThings& things, const ValuePath& path, const Slot
 Result<void> make_change(const NamedThings& things, const SceneChange& change,
                          const std::string& root, NewParts& parts) {
   const auto at = slot_at(things, change.path);
-  if (!at) return refuse(at.error());
+  if (!at) return refuse(at.error().message);
   const Adjust adjust(at->path, change);
   if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
     return std::visit(adjust, at->slot.place);
@@ -383,13 +384,13 @@ std::optional<WrongText> ChangeCheck::first_wrong(const SceneChange& change,
   return first_wrong_at(at, change, texts, should_stop);
 }
 
-std::optional<WrongText> ChangeCheck::first_wrong_at(const Reading<SlotAt>& at,
+std::optional<WrongText> ChangeCheck::first_wrong_at(const Checked<SlotAt>& at,
                                                      const SceneChange& change,
                                                      std::span<const std::string_view> texts,
                                                      const StopRequest& should_stop) const {
   SceneChange one = change;
   const auto check = [&]() -> Result<void> {
-    if (!at) return refuse(at.error());
+    if (!at) return refuse(at.error().message);
     const Adjust adjust(at->path, one);
     if (change.kind != SceneChange::Kind::Set || !at->path.part.empty())
       return std::visit(AdjustCopy(adjust), at->slot.place);

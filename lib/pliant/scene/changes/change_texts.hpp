@@ -40,8 +40,7 @@ class ChangeCheck {
   bool names_file(const std::string& path) const;
 
  private:
-  std::optional<WrongText> first_wrong_at(const xml::Reading<xml::SlotAt>& at,
-                                          const SceneChange& change,
+  std::optional<WrongText> first_wrong_at(const Checked<xml::SlotAt>& at, const SceneChange& change,
                                           std::span<const std::string_view> texts,
                                           const StopRequest& should_stop) const;
 

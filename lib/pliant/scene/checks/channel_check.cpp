@@ -26,7 +26,7 @@ namespace pliant {
 namespace {
 
 // The problem of a value, in words that follow "NAME.attribute at frame F"; null: no problem.
-using Complaint = std::optional<std::string>;
+using Problem = std::optional<std::string>;
 
 template <int D>
 std::string spelled(const Value<D>& value) {
@@ -98,8 +98,8 @@ class ChannelChecker {
 
   // The rules of single channels: their ranges, and those that need more than a range.
   template <class Owner, std::size_t D>
-  Complaint complaint(const Owner& owner, const Attribute& attribute,
-                      const std::array<double, D>& value) const {
+  Problem complaint(const Owner& owner, const Attribute& attribute,
+                    const std::array<double, D>& value) const {
     if constexpr (std::is_same_v<Owner, Surface>) {
       if (attribute.name == "scale") return complaint_of_scale(value);
       if (attribute.unit == edge_slope) return complaint_of_tangent(owner, attribute.name, value);
@@ -109,7 +109,7 @@ class ChannelChecker {
     return {};
   }
 
-  static Complaint complaint_of_scale(std::span<const double> scale) {
+  static Problem complaint_of_scale(std::span<const double> scale) {
     const Transform transform = make_transform(Vector3d::Zero(), Vector3d::Zero(),
                                                {scale[0], scale[1], scale[2]}, RotateOrder::Xyz);
     if (transform.is_invertible()) return {};
@@ -119,8 +119,8 @@ class ChannelChecker {
 
   // A body with tangents never comes to rest, so it cannot recover: SPEC 6. Only a clamped edge has
   // a slope that is given: SPEC 9.
-  static Complaint complaint_of_tangent(const Surface& surface, std::string_view name,
-                                        std::span<const double> slopes) {
+  static Problem complaint_of_tangent(const Surface& surface, std::string_view name,
+                                      std::span<const double> slopes) {
     if (std::all_of(slopes.begin(), slopes.end(), [](double x) { return x == 0; })) return {};
     const auto refused = [&](std::string_view reason) {
       return fmt::format("is {}, but must be 0 {}", fmt::join(slopes, " "), reason);
@@ -145,9 +145,9 @@ class ChannelChecker {
     const int last = channel.is_animated() ? last_ : first_;
     for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
       const Value<D> value = channel.at(frame);
-      const Complaint complaint =
-          is_finite<D>(value) ? rule(value)
-                              : fmt::format("is {}, which is not finite", spelled<D>(value));
+      const Problem complaint = is_finite<D>(value)
+                                    ? rule(value)
+                                    : fmt::format("is {}, which is not finite", spelled<D>(value));
       if (complaint) {
         add_error(name, attribute, channel.is_animated(), frame, *complaint,
                   scene_.origin.at(name, std::string(attribute)));

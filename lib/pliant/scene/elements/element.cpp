@@ -76,9 +76,10 @@ void read_value(const Element& element, const GivenAttribute& given, Slot& row,
                                 fmt::format("the attribute {} of {} {}", in_quotes(given.name),
                                             tag(element), not_supported(row.attribute.instead)));
   }
-  if (const Reading<void> read = row.read(given.value); !read) {
+  if (const Checked<void> read = row.read(given.value); !read) {
     row.is_sound = false;
-    findings.add_problem(place, value_problem(element, given.name, given.value, read.error()));
+    findings.add_problem(place,
+                         value_problem(element, given.name, given.value, read.error().message));
   }
 }
 
@@ -158,14 +159,13 @@ bool read_numbers(const Element& element, std::vector<double>& numbers, Findings
   ContentReader content(element, findings);
   // Whether it is a number; `written`: in the text at a place.
   const auto read = [&](std::string_view word, std::string_view written, const TextPlace& place) {
-    const Reading<double> number = written.size() < longest_number
-                                       ? parse_number(word)
-                                       : tl::unexpected(std::string("is too long for a number"));
+    const Checked<double> number =
+        written.size() < longest_number ? parse_number(word) : refused("is too long for a number");
     if (number)
       numbers.push_back(*number);
     else
       complain(place, fmt::format("{} number {}, {}: {}", tag(element), numbers.size() + 1,
-                                  in_quotes(word), number.error()));
+                                  in_quotes(word), number.error().message));
     return number.has_value();
   };
   for (auto part = content.next(); part; part = content.next()) {

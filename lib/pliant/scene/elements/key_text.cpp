@@ -87,7 +87,7 @@ std::string unknown_interpolation(std::string_view text) {
                      listed(texts_of(interpolations)), listed(texts_of(eases)));
 }
 
-Reading<Interpolation> parse_interpolation(std::string_view text) {
+Checked<Interpolation> parse_interpolation(std::string_view text) {
   const std::string_view chosen = trimmed(text);
   if (const auto* found = find_word(interpolations, chosen); found != std::end(interpolations))
     return Interpolation{.kind = found->second};
@@ -98,70 +98,69 @@ Reading<Interpolation> parse_interpolation(std::string_view text) {
     return Interpolation{
         .kind = Interpolation::Kind::Easing, .ease = ease.second, .side = side->second};
   }
-  return tl::unexpected(unknown_interpolation(chosen));
+  return refused(unknown_interpolation(chosen));
 }
 
 /// The name of a kind, or a slope.
 template <int D>
-Reading<Tangent<D>> parse_tangent(std::string_view text, ValueKind kind) {
+Checked<Tangent<D>> parse_tangent(std::string_view text, ValueKind kind) {
   const std::string_view chosen = trimmed(text);
   if (const auto* found = find_word(tangents<D>, chosen); found != std::end(tangents<D>))
     return Tangent<D>{.kind = found->second};
-  const Reading<Value<D>> slope = parse_value<D>(chosen, kind);
+  const Checked<Value<D>> slope = parse_value<D>(chosen, kind);
   if (slope) return Tangent<D>{.kind = Tangent<D>::Kind::Slope, .slope = *slope};
-  if (looks_like_number(chosen)) return tl::unexpected("as a slope: " + slope.error());
-  return tl::unexpected("unknown word" + hint(chosen, texts_of(tangents<D>)) + ", or a slope");
+  if (looks_like_number(chosen)) return refused("as a slope: " + slope.error().message);
+  return refused("unknown word" + hint(chosen, texts_of(tangents<D>)) + ", or a slope");
 }
 
 /// `hold`, `slope k`, `repeat`, `repeat 3`.
 template <int D>
-Reading<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind kind) {
+Checked<Extrapolation<D>> parse_extrapolation(std::string_view text, ValueKind kind) {
   using Kind = typename Extrapolation<D>::Kind;
   const std::string_view whole = trimmed(text);
   const std::string_view word = whole.substr(0, whole.find_first_of(blanks));
   const std::string_view rest = trimmed(whole.substr(word.size()));
   const auto* found = find_word(extrapolations<D>, word);
   if (found == std::end(extrapolations<D>))
-    return tl::unexpected("unknown word" + hint(word, texts_of(extrapolations<D>)));
+    return refused("unknown word" + hint(word, texts_of(extrapolations<D>)));
   Extrapolation<D> result{.kind = found->second};
   const bool is_loop = repeats<D>(result.kind);
   if (kind == ValueKind::Boolean && result.kind != Kind::Hold && result.kind != Kind::Repeat &&
       result.kind != Kind::Mirror)
-    return tl::unexpected(std::string("a boolean channel allows only hold, repeat and mirror"));
+    return refused("a boolean channel allows only hold, repeat and mirror");
   if (result.kind == Kind::Slope) {
-    const Reading<Value<D>> slope = parse_value<D>(rest, kind);
-    if (!slope) return tl::unexpected("the slope: " + slope.error());
+    const Checked<Value<D>> slope = parse_value<D>(rest, kind);
+    if (!slope) return refused("the slope: " + slope.error().message);
     result.slope = *slope;
   } else if (is_loop && !rest.empty()) {
     constexpr std::int64_t most = 1LL << 53;  // above it, a double cannot represent every count
-    const Reading<std::int64_t> count = parse_integer(rest, 1, most);
-    if (!count) return tl::unexpected("the count: " + count.error());
+    const Checked<std::int64_t> count = parse_integer(rest, 1, most);
+    if (!count) return refused("the count: " + count.error().message);
     result.count = static_cast<double>(*count);
   } else if (!rest.empty()) {
-    return tl::unexpected(
-        fmt::format("{} follows {}, which has no parameter", in_quotes(rest), word));
+    return refused(fmt::format("{} follows {}, which has no parameter", in_quotes(rest), word));
   }
   return result;
 }
 
 template <int D>
-Reading<Handle<D>> parse_handle(std::string_view text, ValueKind kind) {
+Checked<Handle<D>> parse_handle(std::string_view text, ValueKind kind) {
   const std::string_view whole = trimmed(text);
   const std::string_view first = whole.substr(0, whole.find_first_of(blanks));
-  const Reading<double> frames = parse_number(first);
-  if (!frames) return tl::unexpected("the handle's frames: " + frames.error());
-  const Reading<Value<D>> value = parse_value<D>(whole.substr(first.size()), kind);
-  if (!value) return tl::unexpected("the handle's value, after its frames: " + value.error());
+  const Checked<double> frames = parse_number(first);
+  if (!frames) return refused("the handle's frames: " + frames.error().message);
+  const Checked<Value<D>> value = parse_value<D>(whole.substr(first.size()), kind);
+  if (!value) return refused("the handle's value, after its frames: " + value.error().message);
   return Handle<D>{*frames, *value};
 }
 
 /// Four numbers; the two times must be within the segment.
-Reading<std::array<double, 4>> parse_control(std::string_view text) {
+Checked<std::array<double, 4>> parse_control(std::string_view text) {
   std::array<double, 4> control{};
-  if (Reading<void> read = parse_numbers(text, control); !read)
-    return tl::unexpected("x1 y1 x2 y2: " + read.error());
+  if (Checked<void> read = parse_numbers(text, control); !read)
+    return refused("x1 y1 x2 y2: " + read.error().message);
   for (const double x : {control[0], control[2]})
-    if (x < 0 || x > 1) return tl::unexpected(std::string("x1 and x2 must be from 0 to 1"));
+    if (x < 0 || x > 1) return refused("x1 and x2 must be from 0 to 1");
   return control;
 }
 
@@ -210,7 +209,7 @@ Slot written(const Attribute& attribute, T& place, std::string_view type, std::s
              Parse parse, Write write) {
   return custom(
       attribute, type, range,
-      [&place, parse](std::string_view text) -> Reading<void> {
+      [&place, parse](std::string_view text) -> Checked<void> {
         auto read = parse(text);
         if (!read) return tl::unexpected(read.error());
         place = *read;
@@ -301,21 +300,21 @@ ExtrapolationWords extrapolation_words() {
 }
 
 template <int D>
-Reading<Value<D>> parse_value(std::string_view text, ValueKind kind) {
+Checked<Value<D>> parse_value(std::string_view text, ValueKind kind) {
   Value<D> value{};
   if (kind == ValueKind::Boolean) {
-    const Reading<bool> read = parse_boolean(text);
+    const Checked<bool> read = parse_boolean(text);
     if (!read) return tl::unexpected(read.error());
     value.fill(*read ? 1 : 0);
     return value;
   }
   if (kind == ValueKind::Widened && words_of(text).size() == 1) {
-    const Reading<double> read = parse_number(text);
+    const Checked<double> read = parse_number(text);
     if (!read) return tl::unexpected(read.error());
     value.fill(*read);
     return value;
   }
-  if (Reading<void> read = parse_numbers(text, value); !read) return tl::unexpected(read.error());
+  if (Checked<void> read = parse_numbers(text, value); !read) return tl::unexpected(read.error());
   return value;
 }
 
@@ -428,7 +427,7 @@ Table table_of(AnimateText<D>& animate, KeyAxis axis, ValueKind kind) {
     table = {
         custom(
             {.name = "attribute", .meaning = "the channel", .need = Need::Required}, "word",
-            "a channel of its element", [](std::string_view) { return Reading<void>(); }, ""),
+            "a channel of its element", [](std::string_view) { return Checked<void>(); }, ""),
         of.slot_of({.name = "before", .meaning = "values before the first key"}, animate.before),
         of.slot_of({.name = "after", .meaning = "values after the last key"}, animate.after),
     };
@@ -476,8 +475,8 @@ Table table_of(Loop<D>& loop, ValueKind kind) {
   };
 }
 
-template Reading<Value<1>> parse_value<1>(std::string_view, ValueKind);
-template Reading<Value<3>> parse_value<3>(std::string_view, ValueKind);
+template Checked<Value<1>> parse_value<1>(std::string_view, ValueKind);
+template Checked<Value<3>> parse_value<3>(std::string_view, ValueKind);
 template std::string value_text<1>(const Value<1>&, ValueKind);
 template std::string value_text<3>(const Value<3>&, ValueKind);
 template Table table_of<1>(KeyText<1>&, KeyAxis, ValueKind);

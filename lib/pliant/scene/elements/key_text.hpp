@@ -32,7 +32,7 @@ constexpr std::string_view place_name(KeyAxis axis) {
 
 /// One value of a curve with D components.
 template <int D>
-Reading<Value<D>> parse_value(std::string_view text, ValueKind kind);
+Checked<Value<D>> parse_value(std::string_view text, ValueKind kind);
 
 /// The text of such a value.
 template <int D>

@@ -85,17 +85,16 @@ std::optional<Curve<D>> CurveReader<D>::read() {
   if (findings_.problem_count() == problems_before) check_loop();
   if (findings_.problem_count() != problems_before) return std::nullopt;
 
-  tl::expected<Curve<D>, CurveError> curve =
-      Curve<D>::make(std::move(curve_), findings_.should_stop());
+  Checked<Curve<D>> curve = Curve<D>::make(std::move(curve_), findings_.should_stop());
   const auto place_of = [&](std::size_t key) {
     return key < key_places_.size() ? key_places_[key] : animate_.place();
   };
-  if (!curve && curve.error().is_interruption) {
+  if (!curve && curve.error().kind == Complaint::Kind::Interrupted) {
     findings_.stop();
     return std::nullopt;
   }
   if (!curve) {
-    findings_.add_problem(place_of(curve.error().key),
+    findings_.add_problem(place_of(curve.error().index),
                           fmt::format("{}: {}", channel_, curve.error().message));
     return std::nullopt;
   }

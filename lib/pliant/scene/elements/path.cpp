@@ -45,17 +45,17 @@ std::optional<Path> make_path(const Element& element, const PathText& text, Find
   for (const Waypoint& waypoint : text.waypoints) places.push_back(waypoint.at);
   auto path = Path::make(std::move(places), text.is_closed);
   if (path) return std::move(*path);
-  const PathError& error = path.error();
+  const Complaint& error = path.error();
   std::size_t waypoint = 0;
   auto child = element.first_child();
   for (; child; child = child->next())
-    if (child->name() == Description<Waypoint>::element && waypoint++ == error.waypoint) break;
+    if (child->name() == Description<Waypoint>::element && waypoint++ == error.index) break;
   if (child)
     findings.add_problem(child->place(),
-                         fmt::format("<waypoint> {} {}", error.waypoint + 1, error.message));
+                         fmt::format("<waypoint> {} {}", error.index + 1, error.message));
   else
     findings.add_problem(element.place(), fmt::format("{} has {} waypoints; {}", tag(element),
-                                                      error.waypoint, error.message));
+                                                      error.index, error.message));
   return std::nullopt;
 }
 

@@ -190,11 +190,12 @@ void ContentsReader::read_text() {
   if (path_.empty()) name_place(path_of(element_.name()));
   std::vector<double> numbers;
   if (!read_numbers(element_, numbers, findings_)) return doubt(path_);
-  const Reading<void> taken = numbers.empty() ? tl::unexpected(std::string("has no numbers"))
-                                              : contents_.take_numbers(std::move(numbers));
+  const Checked<void> taken =
+      numbers.empty() ? refused("has no numbers") : contents_.take_numbers(std::move(numbers));
   if (taken) return;
   doubt(path_);
-  findings_.add_problem(element_.place(), fmt::format("{} {}", tag(element_), taken.error()));
+  findings_.add_problem(element_.place(),
+                        fmt::format("{} {}", tag(element_), taken.error().message));
 }
 
 void ContentsReader::locate_files() {

@@ -125,9 +125,9 @@ Contents contents_of(PointsOf of) {
     const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rows = net.points;
     return std::vector<double>(rows.data(), rows.data() + rows.size());
   };
-  made.take_numbers = [&net = of.net](const std::vector<double>& numbers) -> Reading<void> {
+  made.take_numbers = [&net = of.net](const std::vector<double>& numbers) -> Checked<void> {
     if (numbers.size() % 3 != 0)
-      return tl::unexpected(fmt::format("has {} numbers; each point has three", numbers.size()));
+      return refused(fmt::format("has {} numbers; each point has three", numbers.size()));
     net.points = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
         numbers.data(), static_cast<Eigen::Index>(numbers.size() / 3), 3);
     return {};
@@ -138,7 +138,7 @@ Contents contents_of(PointsOf of) {
 Contents contents_of(WeightsOf of) {
   Contents made = empty_contents<Description<WeightsOf>>();
   made.numbers = [&net = of.net] { return net.weights; };
-  made.take_numbers = [&net = of.net](std::vector<double> numbers) -> Reading<void> {
+  made.take_numbers = [&net = of.net](std::vector<double> numbers) -> Checked<void> {
     net.weights = std::move(numbers);
     return {};
   };
@@ -157,7 +157,7 @@ Contents contents_of(NetOf<Surface> of) {
                            .words = wrap_words};
   const auto read = [&net, wrap](std::string_view text) {
     Wrap value = Wrap::None;
-    Reading<void> read_word = slot(wrap, choice(value)).read(text);
+    Checked<void> read_word = slot(wrap, choice(value)).read(text);
     net.u.is_closed = closes_u(value);
     net.v.is_closed = closes_v(value);
     return read_word;
@@ -203,7 +203,7 @@ Kinds kinds_of(const KnotsOf& of) {
     if (!is_new) knots->along = along;
     Contents made = contents_of(*knots);
     made.numbers = [&net, along] { return (along == Along::U ? net.u : net.v).knots; };
-    made.take_numbers = [&net, knots](std::vector<double> numbers) -> Reading<void> {
+    made.take_numbers = [&net, knots](std::vector<double> numbers) -> Checked<void> {
       (knots->along == Along::U ? net.u : net.v).knots = std::move(numbers);
       return {};
     };

@@ -47,7 +47,7 @@ struct Contents {
   std::optional<Numbers> text = {};                   ///< what its text is; null: it has none
   std::function<std::vector<double>()> numbers = {};  ///< its text, if there is one
   /// Stores its text, or complains.
-  std::function<Reading<void>(std::vector<double>)> take_numbers = {};
+  std::function<Checked<void>(std::vector<double>)> take_numbers = {};
   const std::string* driver = nullptr;  ///< of a surface, the one that it follows; may be empty
 
   /// The slots that an <animate> in it may name: its own, and those of its parts.

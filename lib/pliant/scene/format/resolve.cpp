@@ -150,17 +150,17 @@ PathScope scope_of(const Scene& scene) {
               }};
 }
 
-Reading<ResolvedPath> resolve(const PathScope& scope, std::string_view path) {
+Checked<ResolvedPath> resolve(const PathScope& scope, std::string_view path) {
   std::optional<ValuePath> parts = split_path(path);
   if (!parts)
-    return tl::unexpected(
+    return refused(
         fmt::format("{} is not a path; write NAME.ATTRIBUTE, such as poke.magnitude or scene.fps",
                     in_quotes(path)));
   ResolvedPath at{.path = *std::move(parts), .element = {}};
   const std::vector<const ElementFormat*> elements = scope.elements(at.path.name);
   if (elements.empty())
-    return tl::unexpected(fmt::format("nothing is named {}{}", in_quotes(at.path.name),
-                                      hint(at.path.name, scope.names())));
+    return refused(fmt::format("nothing is named {}{}", in_quotes(at.path.name),
+                               hint(at.path.name, scope.names())));
   for (const ElementFormat* const element : elements) {
     if (at.format) break;
     at.element = element->name;
@@ -168,31 +168,30 @@ Reading<ResolvedPath> resolve(const PathScope& scope, std::string_view path) {
     const auto found = std::ranges::find(attributes, at.path.attribute, &AttributeFormat::name);
     if (found != attributes.end()) at.format = &*found;
   }
-  if (!at.format) return tl::unexpected(no_attribute(at.path, elements));
+  if (!at.format) return refused(no_attribute(at.path, elements));
   if (at.path.part.empty()) return at;
-  if (std::string problem = no_part(at); !problem.empty()) return tl::unexpected(problem);
+  if (std::string problem = no_part(at); !problem.empty()) return refused(std::move(problem));
   return at;
 }
 
-Reading<SlotAt> slot_at(Scene& scene, std::string_view path) {
+Checked<SlotAt> slot_at(Scene& scene, std::string_view path) {
   return slot_at(NamedThings(scene), path);
 }
 
-Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path) {
+Checked<SlotAt> slot_at(const NamedThings& things, std::string_view path) {
   PathScope scope = scope_of(things.scene());
   scope.elements = [&](const std::string& name) { return things.elements(name); };
-  Reading<ResolvedPath> at = resolve(scope, path);
+  Checked<ResolvedPath> at = resolve(scope, path);
   if (!at) return tl::unexpected(at.error());
   Table table = all_slots(things, at->path.name);
   Slot* const found = find(table, at->path.attribute);
   const Attribute& attribute = found->attribute;
   if (!found->excluded.empty())
-    return tl::unexpected(fmt::format("{}: {}", at->path.title(), found->excluded));
+    return refused(fmt::format("{}: {}", at->path.title(), found->excluded));
   if (attribute.need == Need::Later)
-    return tl::unexpected(
-        fmt::format("{} {}", at->path.attribute, not_supported(attribute.instead)));
+    return refused(fmt::format("{} {}", at->path.attribute, not_supported(attribute.instead)));
   if (attribute.syntax == Syntax::Version || attribute.syntax == Syntax::Name)
-    return tl::unexpected(fmt::format("{} cannot be changed", at->path.attribute));
+    return refused(fmt::format("{} cannot be changed", at->path.attribute));
   return SlotAt{std::move(at->path), std::move(*found)};
 }
 

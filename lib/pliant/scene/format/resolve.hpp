@@ -52,7 +52,7 @@ struct ResolvedPath {
 
 /// Where a path leads. Complaints: the text is no path, or nothing has that name, attribute or
 /// part, with the nearest that there is.
-Reading<ResolvedPath> resolve(const PathScope& scope, std::string_view path);
+Checked<ResolvedPath> resolve(const PathScope& scope, std::string_view path);
 
 /// A path into a scene, with the value that it leads to.
 struct SlotAt {
@@ -91,7 +91,7 @@ class NamedThings {
 };
 
 /// As `resolve`, with the slot in the scene. Complaints also: the value cannot be changed.
-Reading<SlotAt> slot_at(const NamedThings& things, std::string_view path);
-Reading<SlotAt> slot_at(Scene& scene, std::string_view path);
+Checked<SlotAt> slot_at(const NamedThings& things, std::string_view path);
+Checked<SlotAt> slot_at(Scene& scene, std::string_view path);
 
 }  // namespace pliant::xml

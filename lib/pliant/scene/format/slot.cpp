@@ -129,10 +129,8 @@ struct ValueText {
   }
 };
 
-Reading<void> complaint(std::string text) { return tl::unexpected(std::move(text)); }
-
-Reading<void> broken(const Range& range, std::span<const double> numbers) {
-  if (auto rule = range.broken_rule(numbers)) return complaint(*std::move(rule));
+Checked<void> broken(const Range& range, std::span<const double> numbers) {
+  if (auto rule = range.broken_rule(numbers)) return refused(*std::move(rule));
   return {};
 }
 
@@ -141,159 +139,159 @@ struct ReadValue {
   const Attribute& attribute;
   std::string_view text;
 
-  Reading<void> operator()(std::monostate) const {
+  Checked<void> operator()(std::monostate) const {
     if (attribute.syntax == Syntax::Version) return read_version();
     if (attribute.words.empty()) return {};
-    const Reading<int> chosen = read_word(trimmed(text));
-    return chosen ? Reading<void>() : complaint(chosen.error());
+    const Checked<int> chosen = read_word(trimmed(text));
+    return chosen ? Checked<void>() : tl::unexpected(chosen.error());
   }
-  Reading<void> operator()(double* place) const {
-    const Reading<double> number =
+  Checked<void> operator()(double* place) const {
+    const Checked<double> number =
         attribute.syntax == Syntax::Rate ? parse_rate(text) : parse_number(text);
-    if (!number) return complaint(number.error());
+    if (!number) return tl::unexpected(number.error());
     return store(*number, *place);
   }
-  Reading<void> operator()(int* place) const {
+  Checked<void> operator()(int* place) const {
     constexpr auto least = std::int64_t{std::numeric_limits<int>::min()};
     constexpr auto most = std::int64_t{std::numeric_limits<int>::max()};
     const Range& range = attribute.range;
     const auto bound = [](double wanted, std::int64_t otherwise) {
       return std::isfinite(wanted) ? static_cast<std::int64_t>(wanted) : otherwise;
     };
-    const Reading<std::int64_t> number =
+    const Checked<std::int64_t> number =
         parse_integer(text, bound(range.least, least), bound(range.most, most));
-    if (!number) return complaint(number.error());
+    if (!number) return tl::unexpected(number.error());
     *place = static_cast<int>(*number);
     return {};
   }
-  Reading<void> operator()(std::uint64_t* place) const {
-    const Reading<std::uint64_t> number = parse_natural(text);
-    if (!number) return complaint(number.error());
+  Checked<void> operator()(std::uint64_t* place) const {
+    const Checked<std::uint64_t> number = parse_natural(text);
+    if (!number) return tl::unexpected(number.error());
     *place = *number;
     return {};
   }
-  Reading<void> operator()(bool* place) const {
-    const Reading<bool> value = parse_boolean(text);
-    if (!value) return complaint(value.error());
+  Checked<void> operator()(bool* place) const {
+    const Checked<bool> value = parse_boolean(text);
+    if (!value) return tl::unexpected(value.error());
     *place = *value;
     return {};
   }
-  Reading<void> operator()(const Choice& choice) const {
-    const Reading<int> chosen = read_word(trimmed(text));
-    if (!chosen) return complaint(chosen.error());
+  Checked<void> operator()(const Choice& choice) const {
+    const Checked<int> chosen = read_word(trimmed(text));
+    if (!chosen) return tl::unexpected(chosen.error());
     choice.set(choice.place, *chosen);
     return {};
   }
-  Reading<void> operator()(std::string* place) const {
+  Checked<void> operator()(std::string* place) const {
     if (attribute.syntax == Syntax::Name && text.size() > longest_object_name)
-      return complaint(fmt::format("is longer than {} characters", longest_object_name));
+      return refused(fmt::format("is longer than {} characters", longest_object_name));
     if (attribute.syntax == Syntax::Name && !is_name(text))
-      return complaint("must be a letter or _ followed by letters, digits, _ and -");
+      return refused("must be a letter or _ followed by letters, digits, _ and -");
     if (attribute.syntax == Syntax::Path && trimmed(text).empty())
-      return complaint("is empty; the name of a file is required");
+      return refused("is empty; the name of a file is required");
     if (text.empty())
-      return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
+      return refused(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
     *place = text;
     return {};
   }
-  Reading<void> operator()(std::vector<std::string>* place) const {
+  Checked<void> operator()(std::vector<std::string>* place) const {
     const std::vector<std::string_view> words = words_of(text);
     if (words.empty())
-      return complaint(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
+      return refused(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
     std::unordered_set<std::string_view> seen;
     for (const std::string_view word : words) {
       if (!is_name(word))
-        return complaint(in_quotes(word) + " is not a name (names are separated by spaces)");
-      if (!seen.insert(word).second) return complaint(in_quotes(word) + " is given twice");
+        return refused(in_quotes(word) + " is not a name (names are separated by spaces)");
+      if (!seen.insert(word).second) return refused(in_quotes(word) + " is given twice");
     }
     place->assign(words.begin(), words.end());
     return {};
   }
   /// One number for both, or two.
-  Reading<void> operator()(Value<2>* place) const {
+  Checked<void> operator()(Value<2>* place) const {
     const std::size_t count = words_of(text).size();
-    if (count != 1 && count != 2) return complaint("one or two numbers are required");
+    if (count != 1 && count != 2) return refused("one or two numbers are required");
     Value<1> one{};
-    Reading<void> read = count == 1 ? parse_numbers(text, one) : parse_numbers(text, *place);
+    Checked<void> read = count == 1 ? parse_numbers(text, one) : parse_numbers(text, *place);
     if (!read) return read;
     if (count == 1) place->fill(one[0]);
     return broken(attribute.range, *place);
   }
-  Reading<void> operator()(Value<3>* place) const { return read_numbers(*place); }
-  Reading<void> operator()(Channel<1>* place) const { return read_numbers<1>(*place); }
-  Reading<void> operator()(Channel<3>* place) const { return read_numbers<3>(*place); }
-  Reading<void> operator()(PositionChannel* place) const { return read_numbers<3>(*place); }
+  Checked<void> operator()(Value<3>* place) const { return read_numbers(*place); }
+  Checked<void> operator()(Channel<1>* place) const { return read_numbers<1>(*place); }
+  Checked<void> operator()(Channel<3>* place) const { return read_numbers<3>(*place); }
+  Checked<void> operator()(PositionChannel* place) const { return read_numbers<3>(*place); }
   /// One number for all of x, y, z, or three numbers.
-  Reading<void> operator()(TangentChannel* place) const {
+  Checked<void> operator()(TangentChannel* place) const {
     const std::size_t count = words_of(text).size();
-    if (count != 1 && count != 3) return complaint("one or three numbers are required");
+    if (count != 1 && count != 3) return refused("one or three numbers are required");
     return count == 1 ? read_numbers<1>(*place) : read_numbers<3>(*place);
   }
   /// One word for all edges, or four.
-  Reading<void> operator()(Edges* place) const {
+  Checked<void> operator()(Edges* place) const {
     const std::vector<std::string_view> words = words_of(text);
-    if (words.size() != 1 && words.size() != 4) return complaint("one or four words are required");
+    if (words.size() != 1 && words.size() != 4) return refused("one or four words are required");
     Edges edges;
     Edge* const all[] = {&edges.u0, &edges.u1, &edges.v0, &edges.v1};
     for (std::size_t k = 0; k < 4; ++k) {
-      const Reading<int> chosen = read_word(words[words.size() == 1 ? 0 : k]);
-      if (!chosen) return complaint(chosen.error());
+      const Checked<int> chosen = read_word(words[words.size() == 1 ? 0 : k]);
+      if (!chosen) return tl::unexpected(chosen.error());
       *all[k] = static_cast<Edge>(*chosen);
     }
     *place = edges;
     return {};
   }
-  Reading<void> operator()(Switch* place) const {
+  Checked<void> operator()(Switch* place) const {
     bool value = false;
-    if (Reading<void> read = (*this)(&value); !read) return read;
+    if (Checked<void> read = (*this)(&value); !read) return read;
     *place = value;
     return {};
   }
   template <class T>
-  Reading<void> operator()(std::optional<T>* place) const {
+  Checked<void> operator()(std::optional<T>* place) const {
     T value{};
-    if (Reading<void> read = (*this)(&value); !read) return read;
+    if (Checked<void> read = (*this)(&value); !read) return read;
     *place = std::move(value);
     return {};
   }
 
  private:
   /// The format has one version so far; any other is a problem, not read as this one.
-  Reading<void> read_version() const {
-    const Reading<std::int64_t> number = parse_integer(text, 1, std::numeric_limits<int>::max());
-    if (!number) return complaint(number.error());
-    if (*number != 1) return complaint(not_supported() + ", which reads version 1");
+  Checked<void> read_version() const {
+    const Checked<std::int64_t> number = parse_integer(text, 1, std::numeric_limits<int>::max());
+    if (!number) return tl::unexpected(number.error());
+    if (*number != 1) return refused(not_supported() + ", which reads version 1");
     return {};
   }
 
-  Reading<int> read_word(std::string_view chosen) const {
+  Checked<int> read_word(std::string_view chosen) const {
     const auto words = attribute.words;
     if (const auto found = std::find(words.begin(), words.end(), chosen); found != words.end())
       return static_cast<int>(found - words.begin());
     const auto later = attribute.later;
     if (std::find(later.begin(), later.end(), chosen) != later.end())
-      return tl::unexpected(not_supported(attribute.instead) + "; allowed: " + listed(words));
-    return tl::unexpected("unknown word" + hint(chosen, words));
+      return refused(not_supported(attribute.instead) + "; allowed: " + listed(words));
+    return refused("unknown word" + hint(chosen, words));
   }
 
-  Reading<void> store(double number, double& place) const {
-    if (Reading<void> checked = broken(attribute.range, {&number, 1}); !checked) return checked;
+  Checked<void> store(double number, double& place) const {
+    if (Checked<void> checked = broken(attribute.range, {&number, 1}); !checked) return checked;
     place = number;
     return {};
   }
 
   /// D numbers within the range, stored as a `Value<D>` in a place that takes one.
   template <int D>
-  Reading<void> read_numbers(auto& place) const {
+  Checked<void> read_numbers(auto& place) const {
     Value<D> value{};
-    if (Reading<void> read = parse_numbers(text, value); !read) return read;
-    if (Reading<void> checked = broken(attribute.range, value); !checked) return checked;
+    if (Checked<void> read = parse_numbers(text, value); !read) return read;
+    if (Checked<void> checked = broken(attribute.range, value); !checked) return checked;
     place = Channel<D>(value);
     return {};
   }
-  Reading<void> read_numbers(Value<3>& place) const {
+  Checked<void> read_numbers(Value<3>& place) const {
     Value<3> value{};
-    if (Reading<void> read = parse_numbers(text, value); !read) return read;
+    if (Checked<void> read = parse_numbers(text, value); !read) return read;
     place = value;
     return {};
   }
@@ -322,7 +320,7 @@ Slot slot(const Attribute& attribute, Place place) {
 }
 
 Slot custom(const Attribute& attribute, std::string_view type, std::string_view range,
-            std::function<Reading<void>(std::string_view)> read, std::string text) {
+            std::function<Checked<void>(std::string_view)> read, std::string text) {
   return {.attribute = attribute,
           .type = std::string(type),
           .range = std::string(range),

@@ -63,7 +63,7 @@ struct Slot {
   /// The value when the slot was made, as a file gives it: before reading, the default. Empty:
   /// none, or animated.
   std::string text;
-  std::function<Reading<void>(std::string_view)> read;  ///< stores the value, or complains
+  std::function<Checked<void>(std::string_view)> read;  ///< stores the value, or complains
   Place place = {};
 
   TextPlace at = {};               ///< where a file gives or animates it; unknown: it does not
@@ -87,7 +87,7 @@ Slot slot(const Attribute& attribute, Place place = {});
 
 /// A slot with a syntax of its own.
 Slot custom(const Attribute& attribute, std::string_view type, std::string_view range,
-            std::function<Reading<void>(std::string_view)> read, std::string text);
+            std::function<Checked<void>(std::string_view)> read, std::string text);
 
 /// The row of the tables in docs/scene-format.md.
 AttributeFormat format_of(const Slot& slot);

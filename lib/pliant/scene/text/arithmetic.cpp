@@ -30,12 +30,8 @@ bool is_operand_end(const Token& token) {
   return token.kind == Token::operand || token.kind == ')';
 }
 
-tl::unexpected<ArithmeticFault> fault(std::string complaint) {
-  return tl::unexpected(ArithmeticFault{std::move(complaint)});
-}
-
-tl::unexpected<ArithmeticFault> syntax_fault(std::string complaint) {
-  return tl::unexpected(ArithmeticFault{std::move(complaint), true});
+tl::unexpected<Complaint> syntax_fault(std::string message) {
+  return tl::unexpected(Complaint{.message = std::move(message), .kind = Complaint::Kind::Syntax});
 }
 
 /// An operator or parenthesis at the start of a text, and its length; 0: none.
@@ -58,7 +54,7 @@ class Tokenizer {
  public:
   explicit Tokenizer(std::size_t most) : most_(most) {}
 
-  std::optional<tl::expected<Tokens, ArithmeticFault>> read(std::span<const ValuePart> parts) {
+  std::optional<Checked<Tokens>> read(std::span<const ValuePart> parts) {
     for (const ValuePart& part : parts) {
       const bool is_known = part.is_definition ? add_definition(part) : add_written(part.text);
       if (!is_known) return std::nullopt;
@@ -111,9 +107,8 @@ class Tokenizer {
       if (failure == std::errc::invalid_argument) return false;
       const auto length = static_cast<std::size_t>(stop - text.data());
       if (failure == std::errc::result_out_of_range && !fault_)
-        fault_ =
-            ArithmeticFault{fmt::format("{} is outside the range of numbers that can be stored",
-                                        in_quotes(text.substr(0, length)))};
+        fault_ = Complaint{0, fmt::format("{} is outside the range of numbers that can be stored",
+                                          in_quotes(text.substr(0, length)))};
       if (!add({.numbers = {number}, .written = text.substr(0, length)})) return false;
       text.remove_prefix(length);
     }
@@ -124,7 +119,7 @@ class Tokenizer {
   std::size_t count_ = 1;  // of numbers that nothing joins
   int open_ = 0;           // parentheses
   Tokens tokens_;
-  std::optional<ArithmeticFault> fault_;
+  std::optional<Complaint> fault_;
   bool has_blank_ = false;
 };
 
@@ -139,7 +134,7 @@ class Evaluator {
  public:
   explicit Evaluator(const Tokens& tokens) : tokens_(tokens) {}
 
-  tl::expected<std::vector<Component>, ArithmeticFault> components() {
+  Checked<std::vector<Component>> components() {
     std::vector<Component> components;
     while (!at_end()) {
       const std::size_t first = at_;
@@ -190,7 +185,7 @@ class Evaluator {
   Numbers factor(int depth) {
     if (at_end()) return syntax_fault("a number is missing at its end");
     if (depth > deepest_arithmetic)
-      return fault(
+      return refused(
           fmt::format("its parentheses and signs are nested deeper than {}", deepest_arithmetic));
     const Token& token = tokens_[at_++];
     switch (token.kind) {
@@ -226,14 +221,15 @@ class Evaluator {
   static Numbers checked(std::vector<double> numbers) {
     if (std::all_of(numbers.begin(), numbers.end(), [](double one) { return std::isfinite(one); }))
       return numbers;
-    return fault("its result is not finite");
+    return refused("its result is not finite");
   }
 
   template <class Operation>
   static Numbers joined(const std::vector<double>& left, const std::vector<double>& right,
                         std::string_view done, Operation operation) {
     if (left.size() != right.size())
-      return fault(fmt::format("{} and {} numbers cannot be {}", left.size(), right.size(), done));
+      return refused(
+          fmt::format("{} and {} numbers cannot be {}", left.size(), right.size(), done));
     std::vector<double> numbers(left.size());
     std::transform(left.begin(), left.end(), right.begin(), numbers.begin(), operation);
     return checked(std::move(numbers));
@@ -241,7 +237,7 @@ class Evaluator {
 
   static Numbers multiplied(std::vector<double> left, std::vector<double> right) {
     if (left.size() != 1 && right.size() != 1)
-      return fault(
+      return refused(
           fmt::format("{} and {} numbers cannot be multiplied; one of them must be a "
                       "single number",
                       left.size(), right.size()));
@@ -253,8 +249,8 @@ class Evaluator {
 
   static Numbers divided(std::vector<double> left, const std::vector<double>& right) {
     if (right.size() != 1)
-      return fault(fmt::format("it cannot be divided by {} numbers", right.size()));
-    if (right[0] == 0) return fault("it is divided by 0");
+      return refused(fmt::format("it cannot be divided by {} numbers", right.size()));
+    if (right[0] == 0) return refused("it is divided by 0");
     for (double& number : left) number /= right[0];
     return checked(std::move(left));
   }
@@ -278,7 +274,7 @@ std::string digits_of(std::span<const double> numbers) {
   return text;
 }
 
-using Components = tl::expected<std::vector<Component>, ArithmeticFault>;
+using Components = Checked<std::vector<Component>>;
 
 std::optional<Components> components_of(std::span<const ValuePart> parts, std::size_t most = any) {
   auto tokens = Tokenizer(most).read(parts);
@@ -308,8 +304,7 @@ std::optional<Numbers> numbers_of(std::string_view text, std::size_t most) {
   return numbers;
 }
 
-std::optional<tl::expected<std::string, ArithmeticFault>> compute(
-    std::span<const ValuePart> parts) {
+std::optional<Checked<std::string>> compute(std::span<const ValuePart> parts) {
   // As written: a whole number may have more digits than a double.
   const std::optional<Components> components = components_of(parts);
   if (!components) return std::nullopt;

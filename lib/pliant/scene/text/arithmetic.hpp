@@ -8,21 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include <tl/expected.hpp>
+#include "pliant/core/result.hpp"
 
 namespace pliant::xml {
 
 /// The deepest nesting of parentheses and signs.
 inline constexpr int deepest_arithmetic = 64;
 
-/// Why arithmetic has no result, in words that follow `<grid> width="$w / 0": `.
-struct ArithmeticFault {
-  std::string complaint;
-  bool is_syntax = false;  ///< so that the text may not be meant as arithmetic
-};
-
 /// The numbers that a text stands for, or why it has none.
-using Numbers = tl::expected<std::vector<double>, ArithmeticFault>;
+using Numbers = Checked<std::vector<double>>;
 
 /// A piece of a value: characters as written, or a definition that stands in their place.
 struct ValuePart {
@@ -52,6 +46,6 @@ std::optional<Numbers> numbers_of(std::string_view text,
 /// definition that stands alone is kept as it is written; others have the fewest digits that give
 /// the same double. Faults: the syntax; division by 0; a result that is not finite; too many
 /// parentheses; numbers that do not fit each other.
-std::optional<tl::expected<std::string, ArithmeticFault>> compute(std::span<const ValuePart> parts);
+std::optional<Checked<std::string>> compute(std::span<const ValuePart> parts);
 
 }  // namespace pliant::xml

@@ -30,8 +30,6 @@ std::string_view leading_name(std::string_view text) {
   return text.substr(0, static_cast<std::size_t>(end - text.begin()));
 }
 
-tl::unexpected<std::string> refusal(std::string words) { return tl::unexpected(std::move(words)); }
-
 /// `; did you mean "width"?`, or where the name is defined later.
 std::string hint_of_undefined(std::string_view name, const Scope& scope) {
   if (scope.later && name != scope.defined_now) {
@@ -60,7 +58,7 @@ class ValueReader {
       : rest_(value), scope_(scope), may_hint_(may_hint) {}
 
   /// The parts, which refer to the value and the scope.
-  tl::expected<std::vector<ValuePart>, std::string> read() {
+  Checked<std::vector<ValuePart>> read() {
     std::vector<ValuePart> parts;
     while (!rest_.empty()) {
       const std::size_t dollar = std::min(rest_.find('$'), rest_.size());
@@ -98,19 +96,19 @@ class ValueReader {
     return taken;
   }
 
-  tl::expected<ValuePart, std::string> definition() {
+  Checked<ValuePart> definition() {
     const bool has_braces = rest_.starts_with('{');
     if (has_braces) take(1);
     const std::string_view name = take(leading_name(rest_).size());
     if (has_braces && (name.empty() || !rest_.starts_with('}')))
-      return refusal("\"${\" must be followed by a name and \"}\"; write $$ for a $");
-    if (name.empty()) return refusal("\"$\" must be followed by a name; write $$ for a $");
+      return refused("\"${\" must be followed by a name and \"}\"; write $$ for a $");
+    if (name.empty()) return refused("\"$\" must be followed by a name; write $$ for a $");
     if (has_braces) take(1);
     const Definition* const definition = scope_.find(name);
     if (!definition)
-      return refusal(fmt::format("no definition of {} comes before it{}", in_quotes(name),
+      return refused(fmt::format("no definition of {} comes before it{}", in_quotes(name),
                                  may_hint_ ? hint_of_undefined(name, scope_) : ""));
-    if (!definition->is_sound) return refusal({});
+    if (!definition->is_sound) return refused({});
     add_sources(direct_, std::span(definition->sources).first(1));
     add_sources(indirect_, std::span(definition->sources).subspan(1));
     return ValuePart{.text = definition->text,
@@ -165,16 +163,15 @@ void Scope::take(Scope included) {
   imported.merge(included.imported);
 }
 
-tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
-                                                       Use use, bool may_hint) {
+ExpandedValue expand_value(std::string_view value, const Scope& scope, Use use, bool may_hint) {
   if (value.size() > longest_value && value.find('$') != std::string_view::npos)
-    return tl::unexpected(ValueRefusal{
-        fmt::format("is longer than {} KiB, too long for definitions", longest_value >> 10U)});
+    return {refused(
+        fmt::format("is longer than {} KiB, too long for definitions", longest_value >> 10U))};
   ValueReader reader(value, scope, may_hint);
   const auto parts = reader.read();
-  if (!parts) return tl::unexpected(ValueRefusal{parts.error()});
-  const auto refusal_of = [&](std::string complaint) {
-    return tl::unexpected(ValueRefusal{std::move(complaint), reader.sources()});
+  if (!parts) return {refused(parts.error().message)};
+  const auto refuse = [&](std::string message) {
+    return ExpandedValue{refused(std::move(message)), reader.sources()};
   };
   const bool is_defined = std::any_of(parts->begin(), parts->end(),
                                       [](const ValuePart& part) { return part.is_definition; });
@@ -183,10 +180,12 @@ tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, c
   std::string text;
   bool is_too_long = false;
   const auto computed = may_be_computed ? compute(*parts) : std::nullopt;
+  const bool is_kept = computed && !*computed && use == Use::Definition &&
+                       computed->error().kind == Complaint::Kind::Syntax;
   if (computed && computed->has_value()) {
     text = **computed;
-  } else if (computed && !(use == Use::Definition && computed->error().is_syntax)) {
-    return refusal_of(computed->error().complaint);
+  } else if (computed && !is_kept) {
+    return refuse(computed->error().message);
   } else {
     for (const ValuePart& part : *parts) {
       is_too_long = is_defined && text.size() + part.text.size() > longest_value;
@@ -195,9 +194,8 @@ tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, c
     }
   }
   if (is_too_long || (is_defined && text.size() > longest_value))
-    return refusal_of(
-        fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
-  return ExpandedValue{std::move(text), reader.sources()};
+    return refuse(fmt::format("is longer than {} KiB with what is defined", longest_value >> 10U));
+  return {std::move(text), reader.sources()};
 }
 
 }  // namespace pliant::xml

@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include <tl/expected.hpp>
-
 #include "pliant/scene/text/arithmetic.hpp"
 #include "pliant/scene/text/text_place.hpp"
 
@@ -65,20 +63,16 @@ enum class Use {
 
 /// A value in which definitions are used.
 struct ExpandedValue {
-  std::string text;
-  std::vector<std::uint32_t> sources = {};  ///< of these definitions
-};
-
-/// Why a value cannot be made.
-struct ValueRefusal {
-  std::string complaint;  ///< follows `<grid> width="$w": `; empty: the problem is reported already
-  std::vector<std::uint32_t> sources = {};  ///< of the definitions that it was to be made of
+  /// The words of a complaint follow `<grid> width="$w": `; if they are empty, the problem is
+  /// reported already.
+  Checked<std::string> text;
+  std::vector<std::uint32_t> sources = {};  ///< of the definitions that it is made of, or was to be
 };
 
 /// A value, decoded, with `$NAME` and `${NAME}` replaced and `$$` as `$`; computed if it is
-/// arithmetic (`compute`). `may_hint`: whether the refusal of an undefined name has the nearest
-/// one.
-tl::expected<ExpandedValue, ValueRefusal> expand_value(std::string_view value, const Scope& scope,
-                                                       Use use, bool may_hint = true);
+/// arithmetic (`compute`). `may_hint`: whether the complaint about an undefined name has the
+/// nearest one.
+ExpandedValue expand_value(std::string_view value, const Scope& scope, Use use,
+                           bool may_hint = true);
 
 }  // namespace pliant::xml

@@ -80,7 +80,7 @@ void append(const ElementText& element, const Layout& layout, const std::string&
 std::string decoded(std::string_view written) {
   std::string text;
   for (std::size_t at = 0; at < written.size();) {
-    const std::size_t end = std::min(written.find_first_of("&\r", at), written.size());
+    const std::size_t end = std::min(written.find_first_of("&\r\n", at), written.size());
     text += written.substr(at, end - at);
     at = end;
     if (at == written.size()) break;
@@ -89,8 +89,9 @@ std::string decoded(std::string_view written) {
       append_reference(written.substr(at + 1, stop - at - 1), text);
       at = stop + 1;
     } else {
+      const std::string_view pair = written.substr(at, 2);  // as tinyxml2 takes them
       text += '\n';
-      at += written.substr(at).starts_with("\r\n") ? 2 : 1;
+      at += pair == "\r\n" || pair == "\n\r" ? 2 : 1;
     }
   }
   return text;

@@ -95,8 +95,8 @@ class Expander {
     add(text.at(place.value), fmt::format("<{}> {}={}: {}", element, place.name.of(text.text),
                                           in_quotes(value), complaint));
   }
-  std::string told(const ValueRefusal& refusal, const OpenText& text) const {
-    return refusal.complaint + sources_.told(refusal.sources, text.at({}));
+  std::string told(const ExpandedValue& refused, const OpenText& text) const {
+    return refused.text.error().message + sources_.told(refused.sources, text.at({}));
   }
   /// Adds a problem that concerns a limit, after which nothing is expanded further.
   void stop(const TextPlace& place, std::string message) {
@@ -184,18 +184,18 @@ void Expander::expand_attribute(const OpenText& text, const ElementPlace& elemen
   findings_.is_over(value.size());
   auto expanded = expand_value(value, scope, rules_.is_text(owner, name) ? Use::Text : Use::Number,
                                findings_.may_compare_names());
-  if (!expanded) {
+  if (!expanded.text) {
     const bool is_scene = element.parent == ElementPlace::no_parent && owner == scene_name;
-    if (!expanded.error().complaint.empty())
+    if (!expanded.text.error().message.empty())
       add_value(text, attribute, owner, value,
                 is_scene ? "the attributes of <scene> come before all definitions; write the value "
                            "itself"
-                         : told(expanded.error(), text));
+                         : told(expanded, text));
     return expansion_.tree.set_value(text.index, attribute.value.begin, {});
   }
-  spend(expanded->text.size(), place);
-  if (!expanded->sources.empty()) sources_.add_value(place, expanded->sources);
-  expansion_.tree.set_value(text.index, attribute.value.begin, std::move(expanded->text));
+  spend(expanded.text->size(), place);
+  if (!expanded.sources.empty()) sources_.add_value(place, std::move(expanded.sources));
+  expansion_.tree.set_value(text.index, attribute.value.begin, *std::move(expanded.text));
 }
 
 bool Expander::check_place(const OpenText& text, const ElementPlace& element) {
@@ -278,13 +278,13 @@ void Expander::define(const OpenText& text, std::size_t index, const Scope& scop
     const auto value =
         expand_value(*table[1].second, scope, Use::Definition, findings_.may_compare_names());
     scope.defined_now = {};
-    if (value) {
-      definition.sources.insert(definition.sources.end(), value->sources.begin(),
-                                value->sources.end());
-      definition.set(value->text);
-    } else if (!value.error().complaint.empty()) {
+    if (value.text) {
+      definition.sources.insert(definition.sources.end(), value.sources.begin(),
+                                value.sources.end());
+      definition.set(*value.text);
+    } else if (!value.text.error().message.empty()) {
       add_value(text, *text.markup.attribute_of(index, "value", text.text), define_name,
-                *table[1].second, told(value.error(), text));
+                *table[1].second, told(value, text));
     }
   }
   definition.place = place;
@@ -325,11 +325,11 @@ void Expander::include(const OpenText& text, std::size_t index, Scope& scope) {
     add_value(text, named, include_name, written, complaint);
   };
   const auto expanded = expand_value(written, scope, Use::Text, findings_.may_compare_names());
-  if (!expanded) {
-    if (!expanded.error().complaint.empty()) refuse(told(expanded.error(), text));
+  if (!expanded.text) {
+    if (!expanded.text.error().message.empty()) refuse(told(expanded, text));
     return;
   }
-  const std::string& file = expanded->text;
+  const std::string& file = *expanded.text;
   if (trimmed(file).empty()) return refuse("is empty; the name of a file is required");
   if (file.find('\0') != std::string::npos) return refuse("is not the name of a file");
   const fs::path path = text.folder / file;

@@ -36,18 +36,17 @@ std::string trailing_complaint(std::string_view word, std::string_view rest,
 
 /// Reads a whole word by from_chars; `what` names the expected kind.
 template <class T>
-Reading<T> parse_word(std::string_view word, std::string_view what) {
-  if (word.empty()) return tl::unexpected(fmt::format("is empty; {} is required", what));
+Checked<T> parse_word(std::string_view word, std::string_view what) {
+  if (word.empty()) return refused(fmt::format("is empty; {} is required", what));
   if (word.front() == '+')
-    return tl::unexpected(fmt::format("not {}: write it without the plus sign", what));
+    return refused(fmt::format("not {}: write it without the plus sign", what));
   T number = 0;
   const char* const end = word.data() + word.size();
   const auto [stop, failure] = std::from_chars(word.data(), end, number);
-  if (failure == std::errc::invalid_argument) return tl::unexpected(fmt::format("not {}", what));
-  if (stop != end)
-    return tl::unexpected(trailing_complaint(word, word.substr(stop - word.data()), what));
+  if (failure == std::errc::invalid_argument) return refused(fmt::format("not {}", what));
+  if (stop != end) return refused(trailing_complaint(word, word.substr(stop - word.data()), what));
   if (failure == std::errc::result_out_of_range)
-    return tl::unexpected(std::string("outside the range of numbers that can be stored"));
+    return refused("outside the range of numbers that can be stored");
   return number;
 }
 
@@ -66,9 +65,9 @@ std::string between_blanks(std::string_view text, std::size_t count) {
 }
 
 /// Also rejects `nan` and `inf`, which from_chars accepts.
-Reading<double> parse_finite(std::string_view word) {
-  Reading<double> number = parse_word<double>(word, "a number");
-  if (number && !std::isfinite(*number)) return tl::unexpected(std::string("not a finite number"));
+Checked<double> parse_finite(std::string_view word) {
+  Checked<double> number = parse_word<double>(word, "a number");
+  if (number && !std::isfinite(*number)) return refused("not a finite number");
   return number;
 }
 
@@ -80,76 +79,74 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return pliant::words_of(text, blanks);
 }
 
-Reading<double> parse_number(std::string_view text) {
+Checked<double> parse_number(std::string_view text) {
   double number = 0;
-  const Reading<void> read = parse_numbers(text, {&number, 1});
+  const Checked<void> read = parse_numbers(text, {&number, 1});
   if (!read) return tl::unexpected(read.error());
   return number;
 }
 
-Reading<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most) {
-  Reading<std::int64_t> number = parse_word<std::int64_t>(trimmed(text), "a whole number");
+Checked<std::int64_t> parse_integer(std::string_view text, std::int64_t least, std::int64_t most) {
+  Checked<std::int64_t> number = parse_word<std::int64_t>(trimmed(text), "a whole number");
   if (!number) return number;
-  if (*number < least) return tl::unexpected(fmt::format("must be at least {}", least));
-  if (*number > most) return tl::unexpected(fmt::format("must be at most {}", most));
+  if (*number < least) return refused(fmt::format("must be at least {}", least));
+  if (*number > most) return refused(fmt::format("must be at most {}", most));
   return number;
 }
 
-Reading<std::uint64_t> parse_natural(std::string_view text) {
+Checked<std::uint64_t> parse_natural(std::string_view text) {
   const std::string_view word = trimmed(text);
-  if (word.starts_with('-')) return tl::unexpected(std::string("must be at least 0"));
+  if (word.starts_with('-')) return refused("must be at least 0");
   return parse_word<std::uint64_t>(word, "a whole number");
 }
 
-Reading<void> parse_numbers(std::string_view text, std::span<double> numbers) {
+Checked<void> parse_numbers(std::string_view text, std::span<double> numbers) {
   const std::vector<std::string_view> words = words_of(text);
   if (words.empty())
-    return tl::unexpected(fmt::format("is empty; {} {} required", counted_numbers(numbers.size()),
-                                      numbers.size() == 1 ? "is" : "are"));
+    return refused(fmt::format("is empty; {} {} required", counted_numbers(numbers.size()),
+                               numbers.size() == 1 ? "is" : "are"));
   std::vector<double> found;
   for (const std::string_view word : words) {
-    const Reading<double> number = parse_finite(word);
+    const Checked<double> number = parse_finite(word);
     if (!number) {
       const std::string spaced =
           numbers.size() > 1 ? between_blanks(text, numbers.size()) : std::string();
-      return tl::unexpected(
-          !spaced.empty()     ? "numbers are separated by blanks alone: " + in_quotes(spaced)
-          : words.size() == 1 ? number.error()
-                              : fmt::format("{}: {}", in_quotes(word), number.error()));
+      return refused(!spaced.empty() ? "numbers are separated by blanks alone: " + in_quotes(spaced)
+                     : words.size() == 1
+                         ? number.error().message
+                         : fmt::format("{}: {}", in_quotes(word), number.error().message));
     }
     found.push_back(*number);
   }
   if (found.size() != numbers.size())
-    return tl::unexpected(fmt::format("{} {} required, not {}{}", counted_numbers(numbers.size()),
-                                      numbers.size() == 1 ? "is" : "are", found.size(),
-                                      numbers.size() > 1 ? " (separated by spaces)" : ""));
+    return refused(fmt::format("{} {} required, not {}{}", counted_numbers(numbers.size()),
+                               numbers.size() == 1 ? "is" : "are", found.size(),
+                               numbers.size() > 1 ? " (separated by spaces)" : ""));
   std::copy(found.begin(), found.end(), numbers.begin());
   return {};
 }
 
-Reading<bool> parse_boolean(std::string_view text) {
+Checked<bool> parse_boolean(std::string_view text) {
   const std::string_view word = trimmed(text);
   if (word == "true") return true;
   if (word == "false") return false;
-  return tl::unexpected(std::string("must be true or false"));
+  return refused("must be true or false");
 }
 
-Reading<double> parse_rate(std::string_view text) {
+Checked<double> parse_rate(std::string_view text) {
   const std::string_view whole = trimmed(text);
   const std::size_t slash = whole.find('/');
-  Reading<double> over = parse_finite(whole.substr(0, slash));
+  Checked<double> over = parse_finite(whole.substr(0, slash));
   if (!over) return over;
   double rate = *over;
   if (slash != std::string_view::npos) {
-    const Reading<double> under = parse_finite(whole.substr(slash + 1));
+    const Checked<double> under = parse_finite(whole.substr(slash + 1));
     if (!under)
-      return tl::unexpected(fmt::format("after the \"/\" of the fraction: {}", under.error()));
-    if (*under <= 0)
-      return tl::unexpected(std::string("the denominator of the fraction must be greater than 0"));
+      return refused(fmt::format("after the \"/\" of the fraction: {}", under.error().message));
+    if (*under <= 0) return refused("the denominator of the fraction must be greater than 0");
     rate /= *under;
   }
-  if (!(rate > 0) || !std::isfinite(rate))
-    return tl::unexpected(std::string("must be greater than 0 and finite"));
+  if (!(rate > 0) || !std::isfinite(rate)) return refused("must be greater than 0 and finite");
   return rate;
 }
 

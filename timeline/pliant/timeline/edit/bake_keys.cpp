@@ -18,26 +18,26 @@ namespace timeline {
 
 namespace {
 
-std::optional<CurveError> fault_of(double first, double last, double step,
-                                   Interpolation::Kind next) {
+std::optional<Complaint> fault_of(double first, double last, double step,
+                                  Interpolation::Kind next) {
   if (next != Interpolation::Kind::Linear && next != Interpolation::Kind::Bezier) {
-    return CurveError{0, "baked keys must be linear or bezier"};
+    return Complaint{0, "baked keys must be linear or bezier"};
   }
   for (const auto& [name, number] :
        {std::pair{"first", first}, std::pair{"last", last}, std::pair{"step", step}}) {
     if (std::isfinite(number)) continue;
-    return CurveError{0, std::string(name) + " is " + number_text(number) +
-                             "; it must be a finite number of frames"};
+    return Complaint{0, std::string(name) + " is " + number_text(number) +
+                            "; it must be a finite number of frames"};
   }
-  if (!(step > 0)) return CurveError{0, "step is " + number_text(step) + "; it must be positive"};
+  if (!(step > 0)) return Complaint{0, "step is " + number_text(step) + "; it must be positive"};
   if (last < first) {
-    return CurveError{0, "last is frame " + number_text(last) +
-                             "; it must not come before first, frame " + number_text(first)};
+    return Complaint{0, "last is frame " + number_text(last) +
+                            "; it must not come before first, frame " + number_text(first)};
   }
   if ((last - first) / step > most_written_keys - 2) {
-    return CurveError{0, "a key every " + number_text(step) + " frames from " + number_text(first) +
-                             " to " + number_text(last) + " makes more than " +
-                             number_text(most_written_keys) + " keys"};
+    return Complaint{0, "a key every " + number_text(step) + " frames from " + number_text(first) +
+                            " to " + number_text(last) + " makes more than " +
+                            number_text(most_written_keys) + " keys"};
   }
   return std::nullopt;
 }
@@ -70,8 +70,8 @@ Tangent<D> tangent_of(const Value<D>& slope, const Value<D>& start, const Value<
 }  // namespace timeline
 
 template <int D>
-tl::expected<CurveKeys<D>, CurveError> bake_keys(const Curve<D>& curve, double first, double last,
-                                                 double step, Interpolation::Kind next) {
+Checked<CurveKeys<D>> bake_keys(const Curve<D>& curve, double first, double last, double step,
+                                Interpolation::Kind next) {
   using namespace timeline;
   if (const auto error = fault_of(first, last, step, next)) return tl::unexpected(*error);
   const auto compiled = compile(curve.keys());
@@ -107,9 +107,9 @@ tl::expected<CurveKeys<D>, CurveError> bake_keys(const Curve<D>& curve, double f
   return result;
 }
 
-template tl::expected<CurveKeys<1>, CurveError> bake_keys(const Curve<1>&, double, double, double,
-                                                          Interpolation::Kind);
-template tl::expected<CurveKeys<3>, CurveError> bake_keys(const Curve<3>&, double, double, double,
-                                                          Interpolation::Kind);
+template Checked<CurveKeys<1>> bake_keys(const Curve<1>&, double, double, double,
+                                         Interpolation::Kind);
+template Checked<CurveKeys<3>> bake_keys(const Curve<3>&, double, double, double,
+                                         Interpolation::Kind);
 
 }  // namespace pliant

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant {
@@ -15,13 +14,13 @@ namespace pliant {
 /// finite; a step that is not positive; last < first; more than a million keys; keys on one frame
 /// after rounding.
 template <int D>
-[[nodiscard]] tl::expected<CurveKeys<D>, CurveError> bake_keys(
+[[nodiscard]] Checked<CurveKeys<D>> bake_keys(
     const Curve<D>& curve, double first, double last, double step,
     Interpolation::Kind next = Interpolation::Kind::Bezier);
 
-extern template tl::expected<CurveKeys<1>, CurveError> bake_keys(const Curve<1>&, double, double,
-                                                                 double, Interpolation::Kind);
-extern template tl::expected<CurveKeys<3>, CurveError> bake_keys(const Curve<3>&, double, double,
-                                                                 double, Interpolation::Kind);
+extern template Checked<CurveKeys<1>> bake_keys(const Curve<1>&, double, double, double,
+                                                Interpolation::Kind);
+extern template Checked<CurveKeys<3>> bake_keys(const Curve<3>&, double, double, double,
+                                                Interpolation::Kind);
 
 }  // namespace pliant

@@ -16,11 +16,11 @@ namespace pliant {
 namespace {
 
 template <int D>
-std::optional<CurveError> missing(const Curve<D>& curve, std::size_t key) {
+std::optional<Complaint> missing(const Curve<D>& curve, std::size_t key) {
   const std::size_t count = curve.keys().keys.size();
   if (key < count) return std::nullopt;
-  return CurveError{key, "there is no key " + std::to_string(key) + "; the curve has keys 0 to " +
-                             std::to_string(count - 1)};
+  return Complaint{key, "there is no key " + std::to_string(key) + "; the curve has keys 0 to " +
+                            std::to_string(count - 1)};
 }
 
 template <int D>
@@ -60,21 +60,20 @@ void join_around(std::size_t key, CurveKeys<D>& keys) {
 }  // namespace
 
 template <int D>
-tl::expected<Curve<D>, CurveError> delete_keys(const Curve<D>& curve,
-                                               const std::vector<std::size_t>& keys) {
+Checked<Curve<D>> delete_keys(const Curve<D>& curve, const std::vector<std::size_t>& keys) {
   CurveKeys<D> fewer = curve.keys();
   for (const std::size_t key : keys) {
     if (const auto error = missing(curve, key)) return tl::unexpected(*error);
     const double frame = fewer.keys[key].frame;
     if (keys.size() == fewer.keys.size()) {
       return tl::unexpected(
-          CurveError{key, "the key at frame " + timeline::number_text(frame) +
-                              (keys.size() == 1 ? " is the only one and" : " and all others") +
-                              " cannot be deleted; a curve must have at least one key"});
+          Complaint{key, "the key at frame " + timeline::number_text(frame) +
+                             (keys.size() == 1 ? " is the only one and" : " and all others") +
+                             " cannot be deleted; a curve must have at least one key"});
     }
     if (fewer.loop && fewer.loop->from == frame) {
-      return tl::unexpected(CurveError{key, "the key at frame " + timeline::number_text(frame) +
-                                                " cannot be deleted; the loop starts from it"});
+      return tl::unexpected(Complaint{key, "the key at frame " + timeline::number_text(frame) +
+                                               " cannot be deleted; the loop starts from it"});
     }
   }
   std::vector<bool> is_deleted(fewer.keys.size());
@@ -101,13 +100,13 @@ tl::expected<Curve<D>, CurveError> delete_keys(const Curve<D>& curve,
 }
 
 template <int D>
-tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key) {
+Checked<Curve<D>> delete_key(const Curve<D>& curve, std::size_t key) {
   return delete_keys(curve, {key});
 }
 
 template <int D>
-tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key, double frames,
-                                            const Rise<D>& rise) {
+Checked<Curve<D>> move_key(const Curve<D>& curve, std::size_t key, double frames,
+                           const Rise<D>& rise) {
   if (const auto error = missing(curve, key)) return tl::unexpected(*error);
   CurveKeys<D> keys = curve.keys();
   Key<D>& moved = keys.keys[key];
@@ -121,15 +120,11 @@ tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t k
   return Curve<D>::make(std::move(keys));  // checks that the numbers are finite
 }
 
-template tl::expected<Curve<1>, CurveError> delete_keys(const Curve<1>&,
-                                                        const std::vector<std::size_t>&);
-template tl::expected<Curve<3>, CurveError> delete_keys(const Curve<3>&,
-                                                        const std::vector<std::size_t>&);
-template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);
-template tl::expected<Curve<3>, CurveError> delete_key(const Curve<3>&, std::size_t);
-template tl::expected<Curve<1>, CurveError> move_key(const Curve<1>&, std::size_t, double,
-                                                     const Value<1>&);
-template tl::expected<Curve<3>, CurveError> move_key(const Curve<3>&, std::size_t, double,
-                                                     const Value<3>&);
+template Checked<Curve<1>> delete_keys(const Curve<1>&, const std::vector<std::size_t>&);
+template Checked<Curve<3>> delete_keys(const Curve<3>&, const std::vector<std::size_t>&);
+template Checked<Curve<1>> delete_key(const Curve<1>&, std::size_t);
+template Checked<Curve<3>> delete_key(const Curve<3>&, std::size_t);
+template Checked<Curve<1>> move_key(const Curve<1>&, std::size_t, double, const Value<1>&);
+template Checked<Curve<3>> move_key(const Curve<3>&, std::size_t, double, const Value<3>&);
 
 }  // namespace pliant

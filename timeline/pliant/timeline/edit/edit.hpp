@@ -4,8 +4,7 @@
 #include <type_traits>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant {
@@ -23,7 +22,7 @@ namespace pliant {
 /// finite; a segment of another easing, naming its left key; a frame before or after the keys if
 /// one side repeats them.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame);
+[[nodiscard]] Checked<Curve<D>> insert_key(const Curve<D>& curve, double frame);
 
 /// The curve without one of its keys: the segment before it is extended to the next key, and
 /// automatic tangents follow their new neighbours. If two Bézier segments with written tangents of
@@ -31,7 +30,7 @@ template <int D>
 /// lengthened again and the curve stays the same. Errors: no such key; the only key; the key at
 /// which an inner loop starts.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> delete_key(const Curve<D>& curve, std::size_t key);
+[[nodiscard]] Checked<Curve<D>> delete_key(const Curve<D>& curve, std::size_t key);
 
 /// Change of value, for each component [unit]. Not used to deduce D.
 template <int D>
@@ -40,21 +39,21 @@ using Rise = std::type_identity_t<Value<D>>;
 /// The same for several keys, in the order of their frames, in one pass. `keys`: their indices in
 /// the curve, increasing. Errors also: all keys.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> delete_keys(const Curve<D>& curve,
-                                                             const std::vector<std::size_t>& keys);
+[[nodiscard]] Checked<Curve<D>> delete_keys(const Curve<D>& curve,
+                                            const std::vector<std::size_t>& keys);
 
 /// The curve with one key moved by `frames`, its value and `left` raised by `rise`; the rest
 /// follows from the rules. An inner loop that starts at the key is adjusted; its end stays. Errors:
 /// no such key; a number that is not finite; a frame not between those of its neighbours.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> move_key(const Curve<D>& curve, std::size_t key,
-                                                          double frames, const Rise<D>& rise);
+[[nodiscard]] Checked<Curve<D>> move_key(const Curve<D>& curve, std::size_t key, double frames,
+                                         const Rise<D>& rise);
 
 /// The curve later by `frames` and higher by `rise`: g(t) = f(t - frames) + rise.
 /// Errors: a number that is not finite.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frames,
-                                                           const Rise<D>& rise);
+[[nodiscard]] Checked<Curve<D>> move_keys(const Curve<D>& curve, double frames,
+                                          const Rise<D>& rise);
 
 /// How to stretch a curve, in time about `frame` and in value about `value`.
 template <int D>
@@ -75,8 +74,7 @@ struct Scaling {
 /// Errors: a factor of 0; a number that is not finite; an elastic with an amplitude, which all
 /// components share, and value factors of different size; those of `reverse` when time_factor < 0.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve,
-                                                       const Scaling<D>& scaling);
+[[nodiscard]] Checked<Curve<D>> scale(const Curve<D>& curve, const Scaling<D>& scaling);
 
 /// The curve run backwards: g(t) = f(2·pivot - t), with the values on both sides of a jump
 /// exchanged. On the frame of a jump a curve has its new value, so at that frame alone g has the
@@ -84,27 +82,21 @@ template <int D>
 /// of copies and then holds the value of an end key that jumps, which no key of the reversed curve
 /// can express.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot);
+[[nodiscard]] Checked<Curve<D>> reverse(const Curve<D>& curve, double pivot);
 
-extern template tl::expected<Curve<1>, CurveError> insert_key(const Curve<1>&, double);
-extern template tl::expected<Curve<3>, CurveError> insert_key(const Curve<3>&, double);
-extern template tl::expected<Curve<1>, CurveError> delete_key(const Curve<1>&, std::size_t);
-extern template tl::expected<Curve<3>, CurveError> delete_key(const Curve<3>&, std::size_t);
-extern template tl::expected<Curve<1>, CurveError> delete_keys(const Curve<1>&,
-                                                               const std::vector<std::size_t>&);
-extern template tl::expected<Curve<3>, CurveError> delete_keys(const Curve<3>&,
-                                                               const std::vector<std::size_t>&);
-extern template tl::expected<Curve<1>, CurveError> move_key(const Curve<1>&, std::size_t, double,
-                                                            const Value<1>&);
-extern template tl::expected<Curve<3>, CurveError> move_key(const Curve<3>&, std::size_t, double,
-                                                            const Value<3>&);
-extern template tl::expected<Curve<1>, CurveError> move_keys(const Curve<1>&, double,
-                                                             const Value<1>&);
-extern template tl::expected<Curve<3>, CurveError> move_keys(const Curve<3>&, double,
-                                                             const Value<3>&);
-extern template tl::expected<Curve<1>, CurveError> scale(const Curve<1>&, const Scaling<1>&);
-extern template tl::expected<Curve<3>, CurveError> scale(const Curve<3>&, const Scaling<3>&);
-extern template tl::expected<Curve<1>, CurveError> reverse(const Curve<1>&, double);
-extern template tl::expected<Curve<3>, CurveError> reverse(const Curve<3>&, double);
+extern template Checked<Curve<1>> insert_key(const Curve<1>&, double);
+extern template Checked<Curve<3>> insert_key(const Curve<3>&, double);
+extern template Checked<Curve<1>> delete_key(const Curve<1>&, std::size_t);
+extern template Checked<Curve<3>> delete_key(const Curve<3>&, std::size_t);
+extern template Checked<Curve<1>> delete_keys(const Curve<1>&, const std::vector<std::size_t>&);
+extern template Checked<Curve<3>> delete_keys(const Curve<3>&, const std::vector<std::size_t>&);
+extern template Checked<Curve<1>> move_key(const Curve<1>&, std::size_t, double, const Value<1>&);
+extern template Checked<Curve<3>> move_key(const Curve<3>&, std::size_t, double, const Value<3>&);
+extern template Checked<Curve<1>> move_keys(const Curve<1>&, double, const Value<1>&);
+extern template Checked<Curve<3>> move_keys(const Curve<3>&, double, const Value<3>&);
+extern template Checked<Curve<1>> scale(const Curve<1>&, const Scaling<1>&);
+extern template Checked<Curve<3>> scale(const Curve<3>&, const Scaling<3>&);
+extern template Checked<Curve<1>> reverse(const Curve<1>&, double);
+extern template Checked<Curve<3>> reverse(const Curve<3>&, double);
 
 }  // namespace pliant

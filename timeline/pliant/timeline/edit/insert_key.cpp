@@ -57,7 +57,7 @@ class Insertion {
         track_(track),
         frame_(frame) {}
 
-  tl::expected<Curve<D>, CurveError> insert() {
+  Checked<Curve<D>> insert() {
     if (const auto error =
             frame_ < track_.first() || frame_ > track_.last() ? add_outside() : add_inside()) {
       return tl::unexpected(*error);
@@ -67,7 +67,7 @@ class Insertion {
 
  private:
   using Outer = typename Extrapolation<D>::Kind;
-  using MaybeError = std::optional<CurveError>;
+  using MaybeError = std::optional<Complaint>;
 
   std::vector<Key<D>>& keys() { return result_.keys; }
 
@@ -90,10 +90,10 @@ class Insertion {
     for (Extrapolation<D>* side : {&result_.before, &result_.after}) {
       if (!is_loop(*side) && !(side->kind == Outer::Linear && keys().size() == 1)) continue;
       if (keys().size() > 1) {
-        return CurveError{is_before ? 0 : keys().size() - 1,
-                          "frame " + number_text(frame_) + " is outside the keys, and " +
-                              (side == &result_.before ? "before" : "after") +
-                              " shows copies of them; a key there would become part of every copy"};
+        return Complaint{is_before ? 0 : keys().size() - 1,
+                         "frame " + number_text(frame_) + " is outside the keys, and " +
+                             (side == &result_.before ? "before" : "after") +
+                             " shows copies of them; a key there would become part of every copy"};
       }
       *side = {};  // for a single key
     }
@@ -192,10 +192,10 @@ class Insertion {
       return std::nullopt;
     }
     if (!is_row_of_cubics(easing.ease)) {
-      return CurveError{k, "the segment from frame " + number_text(segment.start) +
-                               " has the easing " + name_of(easing) +
-                               ", which a key cannot divide: only quad, cubic, back and bounce "
-                               "consist of cubics; bake it first"};
+      return Complaint{k, "the segment from frame " + number_text(segment.start) +
+                              " has the easing " + name_of(easing) +
+                              ", which a key cannot divide: only quad, cubic, back and bounce "
+                              "consist of cubics; bake it first"};
     }
     std::vector<double> frames = {segment.start, frame_, segment.end};
     for (const double joint : joints_of(easing)) {
@@ -244,11 +244,11 @@ class Insertion {
 }  // namespace timeline
 
 template <int D>
-tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double frame) {
+Checked<Curve<D>> insert_key(const Curve<D>& curve, double frame) {
   using namespace timeline;
   if (!std::isfinite(frame)) {
     return tl::unexpected(
-        CurveError{0, "frame of the new key is " + number_text(frame) + "; it must be finite"});
+        Complaint{0, "frame of the new key is " + number_text(frame) + "; it must be finite"});
   }
   auto keys = without_loop(curve.keys());
   if (!keys) return tl::unexpected(keys.error());
@@ -261,7 +261,7 @@ tl::expected<Curve<D>, CurveError> insert_key(const Curve<D>& curve, double fram
   return Insertion<D>(curve, *std::move(keys), *std::move(shape), track, frame).insert();
 }
 
-template tl::expected<Curve<1>, CurveError> insert_key(const Curve<1>&, double);
-template tl::expected<Curve<3>, CurveError> insert_key(const Curve<3>&, double);
+template Checked<Curve<1>> insert_key(const Curve<1>&, double);
+template Checked<Curve<3>> insert_key(const Curve<3>&, double);
 
 }  // namespace pliant

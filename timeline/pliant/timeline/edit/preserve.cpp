@@ -140,7 +140,7 @@ void set_length(Tangent<D>& tangent, SegmentHandle<D> handle, double length, boo
 }  // namespace
 
 template <int D>
-tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys) {
+Checked<CurveKeys<D>> without_loop(const CurveKeys<D>& keys) {
   auto written = written_out(keys);
   if (!written) return tl::unexpected(written.error());
   CurveKeys<D> result = keys;
@@ -150,15 +150,14 @@ tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys) {
 }
 
 template <int D>
-tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys) {
+Checked<Shape<D>> shape_of(const CurveKeys<D>& keys) {
   const auto compiled = compile(keys);
   if (!compiled) return tl::unexpected(compiled.error());
   return Shape<D>{slopes_in_use(keys), compiled->curve.before.slope, compiled->curve.after.slope};
 }
 
 template <int D>
-tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
-                                             const Slack& slack) {
+Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape, const Slack& slack) {
   // A tangent that becomes a number may change its smooth neighbours, at least by rounding, and an
   // end that no longer extends its line may change the automatic ones there; each round fixes one
   // or more.
@@ -221,12 +220,12 @@ void write_corrections(CurveKeys<D>& author, Overshoot policy) {
   }
 }
 
-template tl::expected<CurveKeys<1>, CurveError> without_loop(const CurveKeys<1>&);
-template tl::expected<CurveKeys<3>, CurveError> without_loop(const CurveKeys<3>&);
-template tl::expected<Shape<1>, CurveError> shape_of(const CurveKeys<1>&);
-template tl::expected<Shape<3>, CurveError> shape_of(const CurveKeys<3>&);
-template tl::expected<Curve<1>, CurveError> preserved(CurveKeys<1>, const Shape<1>&, const Slack&);
-template tl::expected<Curve<3>, CurveError> preserved(CurveKeys<3>, const Shape<3>&, const Slack&);
+template Checked<CurveKeys<1>> without_loop(const CurveKeys<1>&);
+template Checked<CurveKeys<3>> without_loop(const CurveKeys<3>&);
+template Checked<Shape<1>> shape_of(const CurveKeys<1>&);
+template Checked<Shape<3>> shape_of(const CurveKeys<3>&);
+template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&);
+template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&);
 template Slack rounding_of(const CurveKeys<1>&);
 template Slack rounding_of(const CurveKeys<3>&);
 template bool stands_for(const CurveKeys<1>&, const CurveKeys<1>&, const Shape<1>&, const Slack&);

@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant::timeline {
@@ -43,19 +42,19 @@ struct Slack {
 /// The same curve with the inner loop's copies written out as keys.
 /// Errors: those of `written_out`. Requires: broken_rule(keys) finds nothing.
 template <int D>
-[[nodiscard]] tl::expected<CurveKeys<D>, CurveError> without_loop(const CurveKeys<D>& keys);
+[[nodiscard]] Checked<CurveKeys<D>> without_loop(const CurveKeys<D>& keys);
 
 /// The shape of keys. Errors: those of `Curve::make`. Requires: no loop with copies.
 template <int D>
-[[nodiscard]] tl::expected<Shape<D>, CurveError> shape_of(const CurveKeys<D>& keys);
+[[nodiscard]] Checked<Shape<D>> shape_of(const CurveKeys<D>& keys);
 
 /// The curve of edited keys, with the given shape: a tangent whose slope would follow its new
 /// neighbours is written as a number, with its length, and so is a linear extrapolation whose slope
 /// would change. Everything that stays the same keeps its kind. Errors: those of `Curve::make`.
 /// Requires: no loop with copies; `shape` has as many keys.
 template <int D>
-[[nodiscard]] tl::expected<Curve<D>, CurveError> preserved(CurveKeys<D> keys, const Shape<D>& shape,
-                                                           const Slack& slack = {});
+[[nodiscard]] Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape,
+                                          const Slack& slack = {});
 
 /// Allowed rounding for keys that are moved as a whole: 64 units in the last place of the largest
 /// value and of the largest frame.
@@ -72,14 +71,12 @@ bool stands_for(const CurveKeys<D>& author, const CurveKeys<D>& written, const S
 template <int D>
 void write_corrections(CurveKeys<D>& keys, Overshoot policy);
 
-extern template tl::expected<CurveKeys<1>, CurveError> without_loop(const CurveKeys<1>&);
-extern template tl::expected<CurveKeys<3>, CurveError> without_loop(const CurveKeys<3>&);
-extern template tl::expected<Shape<1>, CurveError> shape_of(const CurveKeys<1>&);
-extern template tl::expected<Shape<3>, CurveError> shape_of(const CurveKeys<3>&);
-extern template tl::expected<Curve<1>, CurveError> preserved(CurveKeys<1>, const Shape<1>&,
-                                                             const Slack&);
-extern template tl::expected<Curve<3>, CurveError> preserved(CurveKeys<3>, const Shape<3>&,
-                                                             const Slack&);
+extern template Checked<CurveKeys<1>> without_loop(const CurveKeys<1>&);
+extern template Checked<CurveKeys<3>> without_loop(const CurveKeys<3>&);
+extern template Checked<Shape<1>> shape_of(const CurveKeys<1>&);
+extern template Checked<Shape<3>> shape_of(const CurveKeys<3>&);
+extern template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&);
+extern template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&);
 extern template Slack rounding_of(const CurveKeys<1>&);
 extern template Slack rounding_of(const CurveKeys<3>&);
 extern template bool stands_for(const CurveKeys<1>&, const CurveKeys<1>&, const Shape<1>&,

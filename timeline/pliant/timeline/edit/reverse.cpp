@@ -177,11 +177,11 @@ CurveKeys<D> with_loop(const CurveKeys<D>& author, const CurveKeys<D>& reversed_
 }  // namespace timeline
 
 template <int D>
-tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) {
+Checked<Curve<D>> reverse(const Curve<D>& curve, double pivot) {
   using namespace timeline;
   if (!std::isfinite(pivot)) {
     return tl::unexpected(
-        CurveError{0, "pivot is " + number_text(pivot) + "; it must be a finite frame"});
+        Complaint{0, "pivot is " + number_text(pivot) + "; it must be a finite frame"});
   }
   auto written = written_out(curve.keys());
   if (!written) return tl::unexpected(written.error());
@@ -190,10 +190,10 @@ tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) 
   before.loop.reset();
   if (const auto key = EndKeys<D>(before).held_jump()) {
     return tl::unexpected(
-        CurveError{written->origin_of(*key),
-                   "the key at frame " + number_text(before.keys[*key].frame) +
-                       " jumps, and a side that repeats keeps its value after the last "
-                       "copy, which cannot be reversed; remove the count or the jump"});
+        Complaint{written->origin_of(*key),
+                  "the key at frame " + number_text(before.keys[*key].frame) +
+                      " jumps, and a side that repeats keeps its value after the last "
+                      "copy, which cannot be reversed; remove the count or the jump"});
   }
   const auto shape_before = shape_of(before);
   if (!shape_before) return tl::unexpected(shape_before.error());
@@ -211,7 +211,7 @@ tl::expected<Curve<D>, CurveError> reverse(const Curve<D>& curve, double pivot) 
   return preserved(std::move(keys), shape, slack);
 }
 
-template tl::expected<Curve<1>, CurveError> reverse(const Curve<1>&, double);
-template tl::expected<Curve<3>, CurveError> reverse(const Curve<3>&, double);
+template Checked<Curve<1>> reverse(const Curve<1>&, double);
+template Checked<Curve<3>> reverse(const Curve<3>&, double);
 
 }  // namespace pliant

@@ -90,7 +90,7 @@ Shape<D> mapped(Shape<D> shape, const Mapping<D>& map) {
 /// rounding carries a number across a threshold: then the loop is written out, or a tangent is
 /// written as a number.
 template <int D>
-tl::expected<Curve<D>, CurveError> mapped(const Curve<D>& curve, const Mapping<D>& map) {
+Checked<Curve<D>> mapped(const Curve<D>& curve, const Mapping<D>& map) {
   const auto before = without_loop(curve.keys());
   if (!before) return tl::unexpected(before.error());
   const auto shape_before = shape_of(*before);
@@ -115,14 +115,14 @@ tl::expected<Curve<D>, CurveError> mapped(const Curve<D>& curve, const Mapping<D
 }
 
 template <int D>
-std::optional<CurveError> fault_of(const Curve<D>& curve, const Scaling<D>& scaling) {
+std::optional<Complaint> fault_of(const Curve<D>& curve, const Scaling<D>& scaling) {
   const auto check = [](const std::string& name, double number,
-                        bool is_factor) -> std::optional<CurveError> {
+                        bool is_factor) -> std::optional<Complaint> {
     if (!std::isfinite(number)) {
-      return CurveError{0, name + " is " + number_text(number) + "; it must be a finite number"};
+      return Complaint{0, name + " is " + number_text(number) + "; it must be a finite number"};
     }
     if (is_factor && number == 0) {
-      return CurveError{0, name + " is 0; it must be a number other than 0"};
+      return Complaint{0, name + " is 0; it must be a number other than 0"};
     }
     return std::nullopt;
   };
@@ -139,9 +139,9 @@ std::optional<CurveError> fault_of(const Curve<D>& curve, const Scaling<D>& scal
   for (std::size_t k = 0; k < keys.size(); ++k) {
     const Interpolation& next = keys[k].next;
     if (next.kind == Interpolation::Kind::Easing && next.ease == Ease::Elastic && next.amplitude) {
-      return CurveError{k,
-                        "the elastic segment has one amplitude for all components; their value "
-                        "factors must be of the same size"};
+      return Complaint{k,
+                       "the elastic segment has one amplitude for all components; their value "
+                       "factors must be of the same size"};
     }
   }
   return std::nullopt;
@@ -152,14 +152,13 @@ std::optional<CurveError> fault_of(const Curve<D>& curve, const Scaling<D>& scal
 }  // namespace timeline
 
 template <int D>
-tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frames,
-                                             const Rise<D>& rise) {
+Checked<Curve<D>> move_keys(const Curve<D>& curve, double frames, const Rise<D>& rise) {
   for (int c = -1; c < D; ++c) {
     const double number = c < 0 ? frames : rise[c];
     if (std::isfinite(number)) continue;
-    return tl::unexpected(CurveError{0, std::string(c < 0 ? "number of frames" : "rise") + " is " +
-                                            timeline::number_text(number) +
-                                            "; it must be a finite number"});
+    return tl::unexpected(Complaint{0, std::string(c < 0 ? "number of frames" : "rise") + " is " +
+                                           timeline::number_text(number) +
+                                           "; it must be a finite number"});
   }
   timeline::Mapping<D> map;
   map.frame = [&](double frame) { return frame + frames; };
@@ -168,7 +167,7 @@ tl::expected<Curve<D>, CurveError> move_keys(const Curve<D>& curve, double frame
 }
 
 template <int D>
-tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>& scaling) {
+Checked<Curve<D>> scale(const Curve<D>& curve, const Scaling<D>& scaling) {
   if (const auto error = timeline::fault_of(curve, scaling)) return tl::unexpected(*error);
   if (scaling.time_factor < 0) {
     auto reversed = reverse(curve, scaling.frame);
@@ -191,9 +190,9 @@ tl::expected<Curve<D>, CurveError> scale(const Curve<D>& curve, const Scaling<D>
   return mapped(curve, map);
 }
 
-template tl::expected<Curve<1>, CurveError> move_keys(const Curve<1>&, double, const Value<1>&);
-template tl::expected<Curve<3>, CurveError> move_keys(const Curve<3>&, double, const Value<3>&);
-template tl::expected<Curve<1>, CurveError> scale(const Curve<1>&, const Scaling<1>&);
-template tl::expected<Curve<3>, CurveError> scale(const Curve<3>&, const Scaling<3>&);
+template Checked<Curve<1>> move_keys(const Curve<1>&, double, const Value<1>&);
+template Checked<Curve<3>> move_keys(const Curve<3>&, double, const Value<3>&);
+template Checked<Curve<1>> scale(const Curve<1>&, const Scaling<1>&);
+template Checked<Curve<3>> scale(const Curve<3>&, const Scaling<3>&);
 
 }  // namespace pliant

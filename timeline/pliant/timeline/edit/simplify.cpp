@@ -132,28 +132,28 @@ class Fitter {
   double max_error_;
 };
 
-std::optional<CurveError> fault_of(double first, double last, double max_error) {
+std::optional<Complaint> fault_of(double first, double last, double max_error) {
   for (const auto& [name, number] : {std::pair{"first", first}, std::pair{"last", last}}) {
     if (std::isfinite(number)) continue;
-    return CurveError{
+    return Complaint{
         0, std::string(name) + " is " + number_text(number) + "; it must be a finite frame"};
   }
   if (last < first) {
-    return CurveError{0, "last is frame " + number_text(last) +
-                             "; it must not come before first, frame " + number_text(first)};
+    return Complaint{0, "last is frame " + number_text(last) +
+                            "; it must not come before first, frame " + number_text(first)};
   }
   if (!std::isfinite(max_error) || max_error < 0) {
-    return CurveError{0, "greatest error is " + number_text(max_error) +
-                             "; it must be a finite number of at least 0"};
+    return Complaint{0, "greatest error is " + number_text(max_error) +
+                            "; it must be a finite number of at least 0"};
   }
   return std::nullopt;
 }
 
 /// Keys without a loop, with fits in place of the rows of segments in [from, to] that allow one.
 template <int D>
-tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, const Shape<D>& shape,
-                                                   const Track<D>& track, std::size_t from,
-                                                   std::size_t to, double max_error) {
+Checked<Simplified<D>> simplified(const CurveKeys<D>& keys, const Shape<D>& shape,
+                                  const Track<D>& track, std::size_t from, std::size_t to,
+                                  double max_error) {
   const Fitter<D> fitter(track, max_error);
   Simplified<D> result;
   CurveKeys<D> fewer = keys;
@@ -194,8 +194,8 @@ tl::expected<Simplified<D>, CurveError> simplified(const CurveKeys<D>& keys, con
 }  // namespace timeline
 
 template <int D>
-tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first, double last,
-                                                 double max_error) {
+Checked<Simplified<D>> simplify(const Curve<D>& curve, double first, double last,
+                                double max_error) {
   using namespace timeline;
   if (const auto error = fault_of(first, last, max_error)) return tl::unexpected(*error);
   const auto keys = without_loop(curve.keys());
@@ -212,7 +212,7 @@ tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double f
                     static_cast<std::size_t>(beyond - 1), max_error);
 }
 
-template tl::expected<Simplified<1>, CurveError> simplify(const Curve<1>&, double, double, double);
-template tl::expected<Simplified<3>, CurveError> simplify(const Curve<3>&, double, double, double);
+template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double);
+template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double);
 
 }  // namespace pliant

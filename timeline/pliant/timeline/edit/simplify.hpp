@@ -1,7 +1,6 @@
 #pragma once
 
-#include <tl/expected.hpp>
-
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant {
@@ -22,12 +21,10 @@ struct Simplified {
 /// copies is written out. Errors: a frame that is not finite; last < first; max_error not finite or
 /// negative. Cost: O(keys · log keys) polynomials.
 template <int D>
-[[nodiscard]] tl::expected<Simplified<D>, CurveError> simplify(const Curve<D>& curve, double first,
-                                                               double last, double max_error);
+[[nodiscard]] Checked<Simplified<D>> simplify(const Curve<D>& curve, double first, double last,
+                                              double max_error);
 
-extern template tl::expected<Simplified<1>, CurveError> simplify(const Curve<1>&, double, double,
-                                                                 double);
-extern template tl::expected<Simplified<3>, CurveError> simplify(const Curve<3>&, double, double,
-                                                                 double);
+extern template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double);
+extern template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double);
 
 }  // namespace pliant
