@@ -1,7 +1,7 @@
 // A scene with the files that it includes: parts of one input, between lines of %%. The first is
 // a.xml, the others are b.xml, c.xml, …
 
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 
 #include <map>
 #include <memory>
@@ -10,7 +10,7 @@
 
 #include "fuzz.hpp"
 #include "pliant/scene/elements/scene_file.hpp"
-#include "pliant/scene/text/arithmetic.hpp"
+#include "pliant/scene/sharing/arithmetic.hpp"
 #include "support/tree_check.hpp"
 
 using namespace pliant;

@@ -9,7 +9,7 @@
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "pliant/scene/read.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

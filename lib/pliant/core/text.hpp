@@ -21,6 +21,9 @@ std::optional<int> to_integer(std::string_view text);
 /// The number rounded to significant decimal digits; itself if `digits` is 0 or it is not finite.
 double with_digits(double number, int digits);
 
+/// With which some programs begin a file in UTF-8.
+inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+
 /// The characters that separate the words of a text file.
 inline constexpr std::string_view ascii_blanks = " \t\r\n\v\f";
 

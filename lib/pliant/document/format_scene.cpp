@@ -30,7 +30,7 @@ class Formatter {
   }
 
   std::string format() {
-    const auto begin = text_.starts_with(xml::byte_order_mark) ? xml::byte_order_mark.size() : 0;
+    const auto begin = text_.starts_with(byte_order_mark) ? byte_order_mark.size() : 0;
     result_ = text_.substr(0, begin);
     is_empty_ = true;
     write_content(begin, text_.size(), {Draft::root}, "");

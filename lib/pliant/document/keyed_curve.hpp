@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pliant/document/draft.hpp"
-#include "pliant/scene/elements/key_text.hpp"
+#include "pliant/scene/format/key_text.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/timeline/curve.hpp"
 

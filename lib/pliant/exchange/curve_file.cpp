@@ -10,15 +10,14 @@
 #include "pliant/exchange/formats.hpp"
 #include "pliant/files/file_reference.hpp"
 #include "pliant/files/read_file.hpp"
-#include "pliant/scene/text/markup.hpp"
 
 namespace pliant {
 namespace {
 
 Result<CurveFile> parse_as(std::string_view bytes, CurveFormat format, const CurveReading& reading,
                            const ReadCurveReference& read_reference) {
-  if (format != CurveFormat::Gltf && bytes.starts_with(xml::byte_order_mark))
-    bytes.remove_prefix(xml::byte_order_mark.size());
+  if (format != CurveFormat::Gltf && bytes.starts_with(byte_order_mark))
+    bytes.remove_prefix(byte_order_mark.size());
   switch (format) {
     case CurveFormat::Blender:
       return exchange::parse_blender(bytes, reading);

@@ -8,7 +8,7 @@
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/files/read_mesh.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 
 namespace pliant {
 

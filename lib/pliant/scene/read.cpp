@@ -18,7 +18,7 @@
 #include "pliant/scene/checks/rules.hpp"
 #include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "pliant/scene/text/markup.hpp"
 #include "pliant/scene/text/tree.hpp"
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -9,9 +8,6 @@
 #include "pliant/scene/scene.hpp"
 
 namespace pliant {
-
-/// The most bytes of a scene file.
-inline constexpr std::size_t largest_scene_file = std::size_t{256} << 20U;
 
 /// Reads a scene file, version 1 (docs/scene-format.md), and the files that it includes. Paths in a
 /// file are relative to its folder; `Simulation::make` reads the meshes. All files that the scene

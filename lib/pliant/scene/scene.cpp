@@ -34,6 +34,15 @@ std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
 }
 
+bool is_name(std::string_view text) {
+  const auto is_first = [](char c) {
+    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+  };
+  const auto is_later = [&](char c) { return is_first(c) || c == '-' || (c >= '0' && c <= '9'); };
+  return !text.empty() && text.size() <= longest_object_name && is_first(text.front()) &&
+         std::all_of(text.begin(), text.end(), is_later);
+}
+
 void SceneOrigin::rename(const std::string& name) {
   file = name;
   if (!sources) return;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -278,6 +279,15 @@ struct Group {
 
   friend bool operator==(const Group&, const Group&) = default;
 };
+
+/// The most bytes of a scene file.
+inline constexpr std::size_t largest_scene_file = std::size_t{256} << 20U;
+
+/// The most characters of a name: messages and paths of channels repeat it.
+inline constexpr std::size_t longest_object_name = 1000;
+
+/// Whether a name matches [A-Za-z_][A-Za-z0-9_-]* and is no longer than that.
+bool is_name(std::string_view text);
 
 class SourceMap;
 

@@ -7,7 +7,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/scene/text/scene_texts.hpp"
+#include "pliant/scene/scene_texts.hpp"
 #include "pliant/sweep/input_hashes.hpp"
 #include "pliant/sweep/request.hpp"
 #include "pliant/sweep/takes.hpp"

@@ -1,7 +1,6 @@
-#include "pliant/scene/elements/path.hpp"
-
 #include <string>
 
+#include "pliant/scene/elements/read_elements.hpp"
 #include "scene/scene_text.hpp"
 
 namespace pliant::testing {

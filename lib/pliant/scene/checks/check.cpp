@@ -10,14 +10,6 @@
 #include "pliant/scene/text/findings.hpp"
 
 namespace pliant {
-bool is_name(std::string_view text) {
-  const auto is_first = [](char c) {
-    return c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  };
-  const auto is_later = [&](char c) { return is_first(c) || c == '-' || (c >= '0' && c <= '9'); };
-  return !text.empty() && text.size() <= longest_object_name && is_first(text.front()) &&
-         std::all_of(text.begin(), text.end(), is_later);
-}
 
 std::string unreadable_mesh(const Error& error, const std::string& surface) {
   return fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message);

@@ -11,12 +11,6 @@
 
 namespace pliant {
 
-/// The most characters of a name: messages and paths of channels repeat it.
-inline constexpr std::size_t longest_object_name = 1000;
-
-/// Whether a name matches [A-Za-z_][A-Za-z0-9_-]* and is no longer than that.
-bool is_name(std::string_view text);
-
 /// Checks the rules for a scene as a whole: every number that is no channel is within its range
 /// (docs/scene-format.md); start <= end, at most `max_frames` frames; names well formed and unique
 /// over surfaces, forces and groups; targets and groups exist; a custom force has a function; a

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "pliant/scene/elements/key_text.hpp"
+#include "pliant/scene/format/key_text.hpp"
 #include "pliant/scene/format/slot.hpp"
 #include "pliant/scene/text/element_text.hpp"
 #include "pliant/timeline/curve.hpp"

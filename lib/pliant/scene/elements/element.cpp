@@ -9,8 +9,8 @@
 #include "pliant/files/open_file.hpp"
 #include "pliant/scene/format/artist_words.hpp"
 #include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/format/sharing_text.hpp"
 #include "pliant/scene/text/element_text.hpp"
-#include "pliant/scene/text/expand.hpp"
 
 namespace pliant::xml {
 namespace {

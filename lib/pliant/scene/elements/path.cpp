@@ -1,5 +1,3 @@
-#include "pliant/scene/elements/path.hpp"
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -9,6 +7,7 @@
 
 #include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/format/path_text.hpp"
 
 namespace pliant::xml {
 namespace {

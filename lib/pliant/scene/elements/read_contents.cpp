@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/elements/path.hpp"
 #include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/nearest.hpp"
+#include "pliant/scene/format/path_text.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "pliant/scene/elements/element.hpp"
-#include "pliant/scene/elements/key_text.hpp"
 #include "pliant/scene/elements/scene_file.hpp"
 #include "pliant/scene/format/contents.hpp"
+#include "pliant/scene/format/key_text.hpp"
 #include "pliant/scene/text/findings.hpp"
 #include "pliant/timeline/curve.hpp"
 
@@ -23,6 +23,13 @@ void read_contents(const Element& element, Contents& contents, const std::string
 /// such channel, a channel that is already given or animated, all problems of its keys.
 void read_animate(const Element& animate, std::span<Slot* const> rows, const std::string& owner,
                   Findings& findings);
+
+/// Reads a <path> into the position that its `attribute` names among `rows`, the rows of the
+/// element that contains it. `owner` is the name of the force or group. Problems: no such position,
+/// one that is already given, animated or on a path, all problems of its waypoints and its
+/// progress.
+void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
+               SceneFile& file);
 
 /// Reads the keys of an <animate> or a <falloff>, for an <animate> also the loop and the modes
 /// before and after the keys, and makes the curve. `channel` is the path, such as `poke.magnitude`,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "pliant/scene/scene.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "pliant/scene/text/findings.hpp"
 
 namespace pliant::xml {

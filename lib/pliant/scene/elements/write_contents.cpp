@@ -9,9 +9,8 @@
 #include <fmt/format.h>
 
 #include "pliant/core/text.hpp"
-#include "pliant/scene/changes/change.hpp"
 #include "pliant/scene/elements/curve_text.hpp"
-#include "pliant/scene/elements/path.hpp"
+#include "pliant/scene/format/path_text.hpp"
 
 namespace pliant::xml {
 namespace {

@@ -4,10 +4,10 @@
 #include <functional>
 #include <utility>
 
-#include "pliant/scene/elements/key_text.hpp"
-#include "pliant/scene/elements/path.hpp"
 #include "pliant/scene/format/contents.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/format/key_text.hpp"
+#include "pliant/scene/format/path_text.hpp"
+#include "pliant/scene/format/sharing_text.hpp"
 
 namespace pliant {
 
@@ -169,6 +169,13 @@ const std::vector<ElementFormat>& scene_format() {
 const ElementFormat* find_format(const std::vector<ElementFormat>& formats, std::string_view name) {
   const auto found = std::ranges::find(formats, name, &ElementFormat::name);
   return found != formats.end() ? &*found : nullptr;
+}
+
+std::vector<std::string_view> including_elements() {
+  std::vector<std::string_view> names;
+  for (const ElementFormat& each : scene_format())
+    if (each.may_include) names.push_back(each.name);
+  return names;
 }
 
 }  // namespace pliant

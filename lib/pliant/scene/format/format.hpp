@@ -67,4 +67,7 @@ std::string schema_of(const std::vector<ElementFormat>& formats);
 /// The element of that name; null: there is none.
 const ElementFormat* find_format(const std::vector<ElementFormat>& formats, std::string_view name);
 
+/// The elements that an <include> or a <define> may stand in.
+std::vector<std::string_view> including_elements();
+
 }  // namespace pliant

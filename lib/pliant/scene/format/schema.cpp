@@ -10,7 +10,6 @@
 
 #include "pliant/scene/format/format.hpp"
 #include "pliant/scene/format/schema_types.hpp"
-#include "pliant/scene/text/expansion_rules.hpp"
 
 namespace pliant {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "pliant/scene/elements/key_text.hpp"
+#include "pliant/scene/format/key_text.hpp"
 
 namespace pliant::xml {
 namespace {

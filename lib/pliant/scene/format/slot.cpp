@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/checks/check.hpp"
 #include "pliant/scene/format/nearest.hpp"
 
 namespace pliant::xml {

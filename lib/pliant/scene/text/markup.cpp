@@ -9,7 +9,6 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/scene/read.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {

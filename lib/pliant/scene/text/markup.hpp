@@ -12,9 +12,6 @@
 
 namespace pliant::xml {
 
-/// With which some programs begin a file in UTF-8.
-inline constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-
 /// Where an attribute stands in a text.
 struct AttributePlace {
   TextRange name;

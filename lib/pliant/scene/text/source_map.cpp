@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/scene/text/markup.hpp"
+#include "pliant/core/text.hpp"
 
 namespace pliant {
 namespace {
@@ -49,7 +49,7 @@ std::size_t SourceText::units_before(std::size_t at) const {
 std::pair<int, int> SourceText::position_of(std::size_t at) const {
   const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), at);
   std::size_t begin = *(next - 1);
-  if (begin == 0 && text_.starts_with(xml::byte_order_mark)) begin = xml::byte_order_mark.size();
+  if (begin == 0 && text_.starts_with(byte_order_mark)) begin = byte_order_mark.size();
   const std::size_t units = at > begin ? units_before(at) - units_before(begin) : 0;
   return {static_cast<int>(next - line_starts_.begin()), static_cast<int>(units) + 1};
 }

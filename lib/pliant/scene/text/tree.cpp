@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "pliant/scene/text/element_text.hpp"
-#include "pliant/scene/text/expand.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {
@@ -24,8 +23,7 @@ Element Tree::root() const { return {*this, 0, 0}; }
 bool Tree::is_replaced(int text, std::uint32_t element) const {
   if (!is_spliced_) return false;
   const std::string_view name = this->name(text, element);
-  return name == Description<DefineText>::element ||
-         (name == Description<IncludeText>::element && included_.contains({text, element}));
+  return name == define_name || (name == include_name && included_.contains({text, element}));
 }
 
 std::optional<Tree::Siblings> Tree::in_place_of(int text, std::uint32_t element) const {

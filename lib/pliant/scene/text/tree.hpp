@@ -15,6 +15,9 @@ namespace pliant::xml {
 
 class Element;
 
+inline constexpr std::string_view include_name = "include";
+inline constexpr std::string_view define_name = "define";
+
 /// The elements of a scene's texts. Those of a file that is included stand in place of the
 /// <include>, values that are made of definitions in place of what is written, and a <define> is
 /// not there. Texts and markup must outlive it.

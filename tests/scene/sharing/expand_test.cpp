@@ -1,4 +1,4 @@
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 
 #include <algorithm>
 #include <fstream>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/scene/text/arithmetic.hpp"
+#include "pliant/scene/sharing/arithmetic.hpp"
 #include "pliant/scene/text/text_place.hpp"
 
 namespace pliant::xml {

@@ -1,4 +1,4 @@
-#include "pliant/scene/text/arithmetic.hpp"
+#include "pliant/scene/sharing/arithmetic.hpp"
 
 #include <charconv>
 #include <cmath>

@@ -1,9 +1,8 @@
-#include "pliant/scene/text/expansion_rules.hpp"
+#include "pliant/scene/sharing/expansion_rules.hpp"
 
 #include <iterator>
 #include <string>
 
-#include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/format.hpp"
 #include "pliant/scene/text/text.hpp"
 
@@ -46,13 +45,6 @@ std::optional<TextRange> bare_text(std::string_view text, TextRange content) {
     rest.remove_prefix(rest.find("-->", 4) + 3);
   }
   return std::nullopt;
-}
-
-std::vector<std::string_view> including_elements() {
-  std::vector<std::string_view> names;
-  for (const ElementFormat& each : scene_format())
-    if (each.may_include) names.push_back(each.name);
-  return names;
 }
 
 }  // namespace pliant::xml

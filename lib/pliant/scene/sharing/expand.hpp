@@ -11,14 +11,12 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
-#include "pliant/scene/format/description.hpp"
 #include "pliant/scene/text/findings.hpp"
 #include "pliant/scene/text/markup.hpp"
 #include "pliant/scene/text/source_map.hpp"
 #include "pliant/scene/text/tree.hpp"
 
-namespace pliant {
-namespace xml {
+namespace pliant::xml {
 
 /// The most files that include each other, one in the other.
 inline constexpr int deepest_include = 16;
@@ -66,55 +64,4 @@ struct Expansion {
 std::optional<Expansion> expand(const Markup& markup, const std::filesystem::path& folder,
                                 const TextFiles& files, SourceMap& sources, Findings& findings);
 
-/// The elements that an <include> or a <define> may stand in.
-std::vector<std::string_view> including_elements();
-
-/// The attributes of an <include>.
-struct IncludeText {
-  std::string file = {};
-};
-
-/// The attributes of a <define>.
-struct DefineText {
-  std::string name = {};
-  std::string value = {};
-};
-
-}  // namespace xml
-
-template <>
-struct Description<xml::IncludeText> {
-  static constexpr std::string_view element = "include";
-  static constexpr std::string_view meaning =
-      "A file whose content takes the place of this element.";
-
-  template <class Row, class... Of>
-  static void rows(Row&& row, Of&... of) {
-    row(Attribute{.name = "file",
-                  .meaning = "the file whose content takes the place of the element",
-                  .need = Need::Required,
-                  .syntax = Syntax::Path},
-        of.file...);
-  }
-};
-
-template <>
-struct Description<xml::DefineText> {
-  static constexpr std::string_view element = "define";
-  static constexpr std::string_view meaning =
-      "A name for a text, which $name stands for from here on.";
-
-  template <class Row, class... Of>
-  static void rows(Row&& row, Of&... of) {
-    row(Attribute{.name = "name",
-                  .meaning = "the name: a letter or _, then letters, digits and _",
-                  .need = Need::Required},
-        of.name...);
-    row(Attribute{.name = "value",
-                  .meaning = "what `$name` stands for from here on",
-                  .need = Need::Required},
-        of.value...);
-  }
-};
-
-}  // namespace pliant
+}  // namespace pliant::xml

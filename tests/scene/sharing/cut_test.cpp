@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "pliant/scene/text/text.hpp"
 #include "pliant/scene/write.hpp"
 #include "scene/scene_text.hpp"

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <span>
-#include <string>
 #include <vector>
 
-#include "pliant/scene/elements/element.hpp"
-#include "pliant/scene/elements/scene_file.hpp"
+#include "pliant/scene/format/attribute.hpp"
+#include "pliant/timeline/channel.hpp"
+#include "pliant/timeline/key.hpp"
 
 namespace pliant {
 namespace xml {
@@ -21,13 +20,6 @@ struct PathText {
   bool is_closed = false;
   std::vector<Waypoint> waypoints = {};
 };
-
-/// Reads a <path> into the position that its `attribute` names among `rows`, the rows of the
-/// element that contains it. `owner` is the name of the force or group. Problems: no such position,
-/// one that is already given, animated or on a path, all problems of its waypoints and its
-/// progress.
-void read_path(const Element& element, std::span<Slot> rows, const std::string& owner,
-               SceneFile& file);
 
 }  // namespace xml
 

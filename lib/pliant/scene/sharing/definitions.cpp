@@ -1,4 +1,4 @@
-#include "pliant/scene/text/definitions.hpp"
+#include "pliant/scene/sharing/definitions.hpp"
 
 #include <algorithm>
 #include <span>
@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {

@@ -1,4 +1,4 @@
-#include "pliant/scene/text/arithmetic.hpp"
+#include "pliant/scene/sharing/arithmetic.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {

@@ -1,4 +1,4 @@
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 
 #include <algorithm>
 #include <map>
@@ -12,9 +12,9 @@
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/scene/format/nearest.hpp"
-#include "pliant/scene/text/definitions.hpp"
+#include "pliant/scene/sharing/definitions.hpp"
+#include "pliant/scene/sharing/expansion_rules.hpp"
 #include "pliant/scene/text/element_text.hpp"
-#include "pliant/scene/text/expansion_rules.hpp"
 #include "pliant/scene/text/text.hpp"
 
 namespace pliant::xml {

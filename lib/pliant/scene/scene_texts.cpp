@@ -1,4 +1,4 @@
-#include "pliant/scene/text/scene_texts.hpp"
+#include "pliant/scene/scene_texts.hpp"
 
 #include <cstddef>
 #include <filesystem>

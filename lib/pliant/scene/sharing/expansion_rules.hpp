@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "pliant/scene/format/description.hpp"
-#include "pliant/scene/text/expand.hpp"
+#include "pliant/scene/sharing/expand.hpp"
 
 namespace pliant::xml {
 
-inline constexpr std::string_view include_name = Description<IncludeText>::element;
-inline constexpr std::string_view define_name = Description<DefineText>::element;
 inline constexpr std::string_view fragment_name = "fragment";
 inline constexpr std::string_view scene_name = Description<Scene>::element;
 

@@ -1,4 +1,4 @@
-#include "pliant/scene/elements/key_text.hpp"
+#include "pliant/scene/format/key_text.hpp"
 
 #include <string>
 #include <vector>

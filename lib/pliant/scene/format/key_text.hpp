@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/scene/elements/element.hpp"
+#include "pliant/scene/format/slot.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant::xml {
