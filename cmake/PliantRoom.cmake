@@ -69,7 +69,8 @@ endfunction()
 # takes half of their build time, more than all their runs gain.
 function(pliant_build_fast target)
   pliant_sanitize_fast(${target})
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${target} PRIVATE
+    $<$<CONFIG:Release>:-O1 $<$<CXX_COMPILER_ID:GNU>:-fno-tree-pta>>)
 endfunction()
 
 # pliant_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
