@@ -1,12 +1,16 @@
 #include "pliant/scene/format/contents.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
+
+#include <tinyxml2.h>
 
 #include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/elements/write_contents.hpp"
 #include "pliant/scene/format/format.hpp"
+#include "pliant/scene/format/resolve.hpp"
 #include "pliant/scene/text/markup.hpp"
 #include "pliant/scene/text/tree.hpp"
 #include "support/catch.hpp"
@@ -111,6 +115,41 @@ TEST_CASE("a described element is part of the format and its schema", "[scene][c
   REQUIRE(animate);
   CHECK(animate->parents == std::vector<std::string_view>{"boat", "rig"});
   CHECK_FALSE(find_format(formats, "include"));
+
+  const std::string schema = schema_of(formats);
+  tinyxml2::XMLDocument document;
+  REQUIRE(document.Parse(schema.c_str()) == tinyxml2::XML_SUCCESS);
+  std::set<std::string> types;
+  for (auto* one = document.RootElement()->FirstChildElement("xs:complexType"); one;
+       one = one->NextSiblingElement("xs:complexType"))
+    types.insert(one->Attribute("name"));
+  for (const char* type : {"harbour", "boat", "rig", "sail", "animate.boat", "animate.rig"}) {
+    CAPTURE(type);
+    CHECK(types.contains(type));
+  }
+  for (const char* word : {"starboard", "What the wind fills.", "tension"})
+    CHECK_THAT(schema, contains_text(word));
+}
+
+TEST_CASE("paths lead into described elements", "[scene][contents]") {
+  Harbour harbour;
+  const auto formats = formats_of(xml::contents_of(harbour));
+  const xml::PathScope scope{
+      .names = [] { return std::vector<std::string_view>{"a"}; },
+      .elements =
+          [&](const std::string& name) {
+            std::vector<const ElementFormat*> found;
+            if (name == "a") found = {find_format(formats, "boat"), find_format(formats, "rig")};
+            return found;
+          }};
+  const auto tension = xml::resolve(scope, "a.tension");
+  REQUIRE(tension);
+  CHECK(tension->element == "rig");
+  CHECK(tension->format->is_keyable);
+  CHECK(xml::resolve(scope, "a.tensoin").error().message ==
+        R"("a" has no attribute "tensoin"; did you mean "tension"? allowed: name, tension, masts)");
+  CHECK_THAT(xml::resolve(scope, "b.masts").error().message,
+             contains_text("nothing is named \"b\"; allowed: a"));
 }
 
 TEST_CASE("the channels of a described element are found", "[scene][contents]") {

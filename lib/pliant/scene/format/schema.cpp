@@ -39,6 +39,10 @@ class SchemaWriter {
 
  private:
   const ElementFormat& format(std::string_view name) const;
+  bool has_element(std::string_view name) const { return find_format(formats_, name) != nullptr; }
+  bool may_contain(std::string_view element, std::string_view child) const;
+  bool is_named(std::string_view element) const;
+  const ElementFormat& root() const;
   Names children_of(std::string_view parent) const;
   bool is_force(std::string_view name) const;
   bool may_be_included(std::string_view name) const;
@@ -101,16 +105,31 @@ Names SchemaWriter::children_of(std::string_view parent) const {
   return children;
 }
 
+bool SchemaWriter::may_contain(std::string_view element, std::string_view child) const {
+  return has_element(child) && has(format(child).parents, element);
+}
+
+/// Whether it has a name of its own, that of a channel's path.
+bool SchemaWriter::is_named(std::string_view element) const {
+  return std::ranges::any_of(format(element).attributes,
+                             [](const AttributeFormat& each) { return each.type == "name"; });
+}
+
+const ElementFormat& SchemaWriter::root() const {
+  return *std::ranges::find_if(formats_,
+                               [](const ElementFormat& each) { return each.parents.empty(); });
+}
+
 bool SchemaWriter::is_force(std::string_view name) const {
   if (name == in_fragment.element || name == "include" || name == "define") return false;
-  return has(format(name).parents, "group") && has(format(name).parents, "scene");
+  return may_contain("group", name) && may_contain("scene", name);
 }
 
 /// Whether it may stand beside an <include>.
 bool SchemaWriter::may_be_included(std::string_view name) const {
   const Names& parents = format(name).parents;
   return std::ranges::any_of(parents, [&](std::string_view parent) {
-    return parent != "include" && has(format("include").parents, parent);
+    return parent != "include" && may_contain(parent, "include");
   });
 }
 
@@ -375,28 +394,28 @@ void SchemaWriter::write_unique(const std::string& name, std::string_view select
 }
 
 void SchemaWriter::write_uniques(const Context& context) {
-  if (context.element == "scene" || context.element == in_fragment.element) {
-    std::string selector = "surface|group";
-    for (const ElementFormat& each : formats_) {
-      if (is_force(each.name)) selector += fmt::format("|{0}|group/{0}", each.name);
+  if (context.element == root().name || context.element == in_fragment.element) {
+    std::string things, forces;
+    for (const std::string_view each : children_of(root().name)) {
+      if (is_force(each))
+        forces += fmt::format("|{0}|group/{0}", each);
+      else if (is_named(each))
+        things += fmt::format("{}{}", things.empty() ? "" : "|", each);
     }
-    write_unique(context.type() + ".names", selector, "@name");
+    write_unique(context.type() + ".names", things + forces, "@name");
   }
   if (context.element == in_fragment.element) return;
   std::string animates = "animate";
   for (const ChildFormat& child : format(context.element).children) {
     const std::string_view name = child.names.front();
-    if (child.is_part && has(format("animate").parents, name))
-      animates += fmt::format("|{}/animate", name);
+    if (child.is_part && may_contain(name, "animate")) animates += fmt::format("|{}/animate", name);
     if (!child.row.unique_by.empty())
       write_unique(fmt::format("{}.{}", context.type(), name), name,
                    fmt::format("@{}", child.row.unique_by));
   }
-  if (context.element == "surface") write_unique("surface.channels", animates, "@attribute");
-  if (context.element == "group" || is_force(context.element)) {
-    const std::string_view moved = positions_of(context).empty() ? "animate" : "animate|path";
-    write_unique(context.type() + ".channels", moved, "@attribute");
-  }
+  if (!is_named(context.element) || !may_contain(context.element, "animate")) return;
+  if (!positions_of(context).empty()) animates += "|path";
+  write_unique(context.type() + ".channels", animates, "@attribute");
 }
 
 void SchemaWriter::write_element(std::string_view name) {
@@ -409,11 +428,13 @@ void SchemaWriter::write_element(std::string_view name) {
 }
 
 std::string SchemaWriter::write() {
-  write_element("scene");
-  write_element(in_fragment.element);
-  open("xs:complexType name=\"fragment\"");
-  write_content(in_fragment);
-  close("xs:complexType");
+  write_element(root().name);
+  if (has_element("include")) {
+    write_element(in_fragment.element);
+    open("xs:complexType name=\"fragment\"");
+    write_content(in_fragment);
+    close("xs:complexType");
+  }
   for (const ElementFormat& each : formats_) {
     if (may_be_included(each.name)) write_element(each.name);
     const bool is_own = each.name == "animate" || each.name == "path" || each.name == "key" ||
@@ -421,17 +442,19 @@ std::string SchemaWriter::write() {
     if (!is_own) write_type({each.name});
     if (is_force(each.name)) write_type({each.name, true});
   }
-  write_falloff();
+  if (has_element("falloff")) write_falloff();
   for (const ElementFormat& each : formats_) {
     for (const bool is_in_group : {false, true}) {
       const Context context{each.name, is_in_group};
       if (is_in_group && !is_force(each.name)) continue;
-      if (has(format("animate").parents, each.name)) write_animate(context);
-      if (has(format("path").parents, each.name)) write_path(context);
+      if (may_contain(each.name, "animate")) write_animate(context);
+      if (may_contain(each.name, "path")) write_path(context);
     }
   }
-  write_animate(in_fragment);
-  write_path(in_fragment);
+  if (has_element("include")) {
+    write_animate(in_fragment);
+    write_path(in_fragment);
+  }
   for (const KeyValues values : {KeyValues::Numbers, KeyValues::Vectors, KeyValues::Any}) {
     write_keys(values);
   }
