@@ -2,77 +2,64 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <map>
+#include <set>
+#include <string_view>
 #include <utility>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/core/text.hpp"
-#include "pliant/files/read_file.hpp"
 #include "pliant/scene/elements/scene_file.hpp"
-#include "pliant/scene/read.hpp"
+#include "pliant/scene/text/source_map.hpp"
 
 namespace pliant {
 namespace {
 
-using Places = std::map<std::string, std::size_t, std::less<>>;  // of paths among the texts
+using Texts = std::map<std::string_view, std::string_view>;  // by their paths
 
-// Files on the disk, which notes in `texts` what it finds.
-xml::TextFiles noting(SceneTexts& texts, Places& places, const std::string& root,
-                      const StopRequest& should_stop) {
-  const xml::TextFiles disk = xml::files_on_disk(root, should_stop);
-  return {.identify = [&, disk](const std::filesystem::path& path) -> Result<std::string> {
-            auto identity = disk.identify(path);
-            if (identity && places.emplace(path.string(), texts.included.size()).second)
-              texts.included.push_back({path.string(), *identity});
-            return identity;
-          },
-          .read = [&, disk](const std::filesystem::path& path,
-                            std::size_t most_bytes) -> Result<std::string> {
-            auto text = disk.read(path, most_bytes);
-            const auto noted = places.find(path.string());
-            if (text && noted != places.end()) texts.included[noted->second].text = *text;
-            return text;
-          }};
-}
-
-// The texts of `places`, which must outlive it.
-xml::TextFiles among(const SceneTexts& texts, const Places& places) {
-  const auto find = [&](const std::filesystem::path& path) -> Result<const IncludedText*> {
-    const auto found = places.find(path.string());
-    if (found == places.end())
+// The files of `texts`, which must outlive it; a path is all that tells one from another.
+xml::TextFiles among(const Texts& texts) {
+  const auto find = [&](const std::filesystem::path& path) -> Result<std::string_view> {
+    const auto found = texts.find(path.native());
+    if (found == texts.end())
       return fail(ErrorCode::Unreadable, "is not among the texts that are kept");
-    return &texts.included[found->second];
+    return found->second;
   };
-  const auto with = [find](std::string IncludedText::*member) {
-    return [find, member](const std::filesystem::path& path, auto...) -> Result<std::string> {
-      const auto found = find(path);
-      if (!found) return fail(found.error());
-      return (*found)->*member;
-    };
-  };
-  return {.identify = with(&IncludedText::identity), .read = with(&IncludedText::text)};
+  return {.identify = [find](const std::filesystem::path& path) -> Result<std::string> {
+            if (auto found = find(path); !found) return fail(found.error());
+            return path.string();
+          },
+          .read = [find](const std::filesystem::path& path, std::size_t) -> Result<std::string> {
+            const auto found = find(path);
+            if (!found) return fail(found.error());
+            return std::string(*found);
+          }};
 }
 
 }  // namespace
 
-Result<LoadedScene> load_scene_with_texts(const std::string& file, const std::string& root,
-                                          const StopRequest& should_stop) {
-  auto text = read_file(file, largest_scene_file, should_stop);
-  if (!text) return fail(text.error());
-  SceneTexts texts{file, *std::move(text)};
-  Places places;
-  auto scene = xml::parse_scene_of(texts.text, file, folder_of_file(file), root,
-                                   noting(texts, places, root, should_stop), should_stop);
-  if (!scene) return fail(scene.error());
-  return LoadedScene{*std::move(scene), std::move(texts)};
+SceneTexts texts_of(const Scene& scene) {
+  PLIANT_EXPECTS(scene.origin.sources);
+  SceneTexts texts;
+  std::set<std::string_view> seen;
+  for (const SourceMap::Source& source : scene.origin.sources->sources()) {
+    const std::string_view text = source.text->text();
+    if (!source.include.is_known()) {
+      texts.file = source.file;
+      texts.text = text;
+    } else if (seen.insert(source.file).second) {
+      texts.included.push_back({source.file, std::string(text)});
+    }
+  }
+  return texts;
 }
 
 Result<Scene> parse_scene(const SceneTexts& texts, const std::string& root,
                           const StopRequest& should_stop) {
-  Places places;
-  for (std::size_t k = 0; k < texts.included.size(); ++k) places.emplace(texts.included[k].path, k);
+  Texts included;
+  for (const IncludedText& one : texts.included) included.emplace(one.path, one.text);
   return xml::parse_scene_of(texts.text, texts.file, folder_of_file(texts.file), root,
-                             among(texts, places), should_stop);
+                             among(included), should_stop);
 }
 
 }  // namespace pliant

@@ -11,9 +11,8 @@ namespace pliant {
 
 /// The text of a file that a scene includes, as it was when the scene was read.
 struct IncludedText {
-  std::string path;      ///< as reading the scene asks for it
-  std::string identity;  ///< the same for all paths to one file
-  std::string text = {};
+  std::string path;  ///< as reading the scene asks for it
+  std::string text;
 };
 
 /// All text that a scene is read from: with it, reading the scene again needs none of these files.
@@ -23,15 +22,8 @@ struct SceneTexts {
   std::vector<IncludedText> included = {};
 };
 
-/// A scene with the text that it was read from.
-struct LoadedScene {
-  Scene scene;
-  SceneTexts texts;
-};
-
-/// As `load_scene`.
-Result<LoadedScene> load_scene_with_texts(const std::string& file, const std::string& root = {},
-                                          const StopRequest& should_stop = {});
+/// Requires: the scene was read.
+SceneTexts texts_of(const Scene& scene);
 
 /// The scene of these texts; relative names of meshes are those of the folder of `texts.file`.
 /// Errors: as `load_scene`, also for an included file that is not among the texts.

@@ -16,6 +16,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/files/atomic_file.hpp"
 #include "pliant/files/writer.hpp"
+#include "pliant/scene/read.hpp"
 #include "pliant/states/engine.hpp"
 #include "pliant/sweep/log.hpp"
 #include "pliant/sweep/sweep_file.hpp"
@@ -93,7 +94,6 @@ Result<void> check_is_utf8(const SweepFile& file) {
   for (const SceneTexts& texts : file.texts) {
     for (const IncludedText& text : texts.included) {
       if (auto is = check_is_utf8("the included file", text.path); !is) return is;
-      if (auto is = check_is_utf8("the included file", text.identity); !is) return is;
     }
   }
   for (const InputHash& input : file.inputs)
@@ -161,10 +161,10 @@ Result<Asked> read_request(const SweepRequest& request, const StopRequest& shoul
     const auto path = absolute_path(scene);
     if (!path) return fail(path.error());
     if (auto is = check_is_utf8("the folder of SCENE", *path); !is) return fail(is.error());
-    auto loaded = load_scene_with_texts(*path, file.request.root, should_stop);
+    auto loaded = load_scene(*path, file.request.root, should_stop);
     if (!loaded) return fail(named(loaded.error(), *path, scene));
-    asked.scenes.push_back(std::move(loaded->scene));
-    file.texts.push_back(std::move(loaded->texts));
+    file.texts.push_back(texts_of(*loaded));
+    asked.scenes.push_back(*std::move(loaded));
   }
   return asked;
 }

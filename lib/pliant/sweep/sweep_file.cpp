@@ -103,8 +103,7 @@ FileJson texts_of_scenes(const SweepFile& content) {
   for (const SceneTexts& texts : content.texts) {
     FileJson one{{"file", texts.file}, {"text", texts.text}, {"included", FileJson::array()}};
     for (const IncludedText& text : texts.included)
-      one["included"].push_back(
-          {{"path", text.path}, {"identity", text.identity}, {"text", text.text}});
+      one["included"].push_back({{"path", text.path}, {"text", text.text}});
     all.push_back(std::move(one));
   }
   return all;
@@ -183,8 +182,7 @@ class SweepFileReader : private JsonReader {
       texts.file = required_text(json, "file");
       texts.text = required_text(json, "text");
       each_required(json, "included", [&](Json& one) {
-        texts.included.push_back({required_text(one, "path"), required_text(one, "identity"),
-                                  required_text(one, "text")});
+        texts.included.push_back({required_text(one, "path"), required_text(one, "text")});
       });
     });
     if (!fault_ && content.texts.size() != content.request.scenes.size())
