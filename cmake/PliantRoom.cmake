@@ -73,11 +73,12 @@ function(pliant_build_fast target)
     $<$<CONFIG:Release>:-O1 $<$<CXX_COMPILER_ID:GNU>:-fno-tree-pta>>)
 endfunction()
 
-# pliant_room(NAME SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
+# pliant_room(NAME [LAYERS folder ...] SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
 # makes the library pliant_NAME, alias pliant::NAME. Paths are relative to the room's own folder,
-# which is <include root>/pliant/NAME, with a slash for an underscore.
+# which is <include root>/pliant/NAME, with a slash for an underscore. LAYERS: see
+# script/check_rooms.
 function(pliant_room name)
-  cmake_parse_arguments(PARSE_ARGV 1 room "" "" "SOURCES;HEADERS;PUBLIC;PRIVATE")
+  cmake_parse_arguments(PARSE_ARGV 1 room "" "" "LAYERS;SOURCES;HEADERS;PUBLIC;PRIVATE")
   set(target pliant_${name})
   string(REPLACE "_" "/" folder "${name}")
   string(REGEX REPLACE "/pliant/${folder}$" "" include_root "${CMAKE_CURRENT_SOURCE_DIR}")
