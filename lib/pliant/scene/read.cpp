@@ -127,6 +127,8 @@ Scene read_root(const Element& root, SceneFile& file) {
 
 /// Reads a root that is probably a <scene>.
 std::optional<Scene> read_document(const Element& root, SceneFile& file) {
+  // That it stands there is reported.
+  if (root.name() == include_name || root.name() == define_name) return std::nullopt;
   constexpr std::string_view expected[] = {"scene"};
   if (root.name() != expected[0]) {
     const bool is_fragment = root.name() == "fragment";
