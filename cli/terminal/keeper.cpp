@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "cli/terminal/kept_program.hpp"
 #include "cli/terminal/scratch_folder.hpp"
+#include "cli/terminal/supervised_program.hpp"
 
 namespace pliant::cli {
 

@@ -44,9 +44,10 @@ class Keeper {
 /// The first argument with which the command starts itself as a keeper.
 inline constexpr std::string_view keeper_request = "__keep";
 
-/// A keeper. `words`: a folder, the program that it keeps and its arguments (see `KeptProgram`), or
-/// only the place of a folder that it makes (see `ScratchFolder`); and a null. Requires: one
-/// thread; the descriptor of `ChildStreams::lifeline` is open. Returns the exit code.
+/// A keeper. `words`: a folder, the program that it keeps and its arguments (see
+/// `SupervisedProgram`), or only the place of a folder that it makes (see `ScratchFolder`); and a
+/// null. Requires: one thread; the descriptor of `ChildStreams::lifeline` is open. Returns the exit
+/// code.
 int run_keeper(std::span<char*> words);
 
 /// For a keeper: closes its standard streams, for whoever waits for their end.

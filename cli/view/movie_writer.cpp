@@ -43,12 +43,12 @@ class Ffmpeg {
         open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
     Pipe pixels;
     if (!messages.is_open() || !pixels.open()) return missing(std::strerror(errno));
-    auto kept = KeptProgram::start(
+    auto program = SupervisedProgram::start(
         std::move(all), {.input = pixels.reading.number(), .errors = messages.number()}, folder);
-    if (!kept) return missing(kept.error().message);
+    if (!program) return missing(program.error().message);
     const int input = pixels.writing.number();
     fcntl(input, F_SETFL, fcntl(input, F_GETFL) | O_NONBLOCK);
-    return Ffmpeg(*std::move(kept), std::move(pixels.writing), log);
+    return Ffmpeg(*std::move(program), std::move(pixels.writing), log);
   }
 
   // Waits until it has read all bytes. Errors: Unwritable with ffmpeg's message if it ended;
@@ -79,7 +79,7 @@ class Ffmpeg {
   }
 
  private:
-  Ffmpeg(KeptProgram program, OpenDescriptor input, std::string log)
+  Ffmpeg(SupervisedProgram program, OpenDescriptor input, std::string log)
       : program_(std::move(program)), input_(std::move(input)), log_(std::move(log)) {}
 
   // The first line of its log, or the beginning of it: later ones are consequences.
@@ -94,7 +94,7 @@ class Ffmpeg {
                             line.empty() ? "it gave no reason" : printable(line)));
   }
 
-  KeptProgram program_;  // its incomplete output is useless
+  SupervisedProgram program_;  // its incomplete output is useless
   OpenDescriptor input_;
   std::string log_;
 };

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "cli/commands/frame_rate.hpp"
-#include "cli/terminal/kept_program.hpp"
+#include "cli/terminal/supervised_program.hpp"
 #include "pliant/core/result.hpp"
 #include "viewer/png_check.hpp"
 

@@ -19,9 +19,9 @@
 #include "cli/commands/scene_input.hpp"
 #include "cli/terminal/child.hpp"
 #include "cli/terminal/interrupt.hpp"
-#include "cli/terminal/kept_program.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/report.hpp"
+#include "cli/terminal/supervised_program.hpp"
 #include "cli/view/view_scene.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/atomic_file.hpp"
@@ -42,7 +42,7 @@ tl::unexpected<Error> no_browser(std::string_view option) {
 }
 
 // A headless browser.
-Result<KeptProgram> open_browser(const std::string& url, const ScratchFolder& folder) {
+Result<SupervisedProgram> open_browser(const std::string& url, const ScratchFolder& folder) {
   const auto* const program = std::find_if(browsers.begin(), browsers.end(), &is_on_path);
   if (program == browsers.end()) return no_browser("--png");
   std::vector<std::string> words = {*program,
@@ -56,7 +56,7 @@ Result<KeptProgram> open_browser(const std::string& url, const ScratchFolder& fo
   // Chromium does not run as root with its sandbox. It opens only our page.
   if (geteuid() == 0) words.emplace_back("--no-sandbox");
   words.push_back(url);
-  return KeptProgram::start(std::move(words), {}, folder);
+  return SupervisedProgram::start(std::move(words), {}, folder);
 }
 
 // The address of a file, whatever bytes its path has.
@@ -152,8 +152,8 @@ Result<void> check_browser(std::string_view option) {
 struct PictureTaker::State {
   viewer::ViewServer server;
   ScratchFolder folder;
-  std::optional<KeptProgram> browser = {};  // from the first order on; last, so that it ends before
-                                            // the members it uses
+  std::optional<SupervisedProgram> browser = {};  // from the first order on; last, so that it ends
+                                                  // before the members it uses
   int orders = 0;
 };
 

@@ -31,14 +31,14 @@ class Shelf {
 
   /// The item of this key that `is_same` accepts; null: there is none. It stays valid without the
   /// shelf.
-  template <class Kept>
-  std::shared_ptr<const Kept> find(const Hash& key,
-                                   const std::function<bool(const Kept&)>& is_same) {
+  template <class Wanted>
+  std::shared_ptr<const Wanted> find(const Hash& key,
+                                     const std::function<bool(const Wanted&)>& is_same) {
     for (const std::shared_ptr<const Item>& item : items_of(key)) {
-      auto kept = std::dynamic_pointer_cast<const Kept>(item);
-      if (!kept || !is_same(*kept)) continue;
+      auto found = std::dynamic_pointer_cast<const Wanted>(item);
+      if (!found || !is_same(*found)) continue;
       use(key, *item);
-      return kept;
+      return found;
     }
     return nullptr;
   }

@@ -29,14 +29,14 @@ class SolverCache {
   SolverCounts counts() const;
 
  private:
-  struct Kept {
+  struct Entry {
     Outline outline;
     std::unique_ptr<PlateSolver> solver;
   };
 
   SolverChoice choice_;
   RunContext context_;
-  std::vector<Kept> kept_;
+  std::vector<Entry> entries_;
   SolverCounts gone_;  // counts of the solvers that were destroyed
 };
 

@@ -48,16 +48,16 @@ double diagonal_of(const Field& positions) {
 
 }  // namespace
 
-std::shared_ptr<const Field> AnimatedShape::Kept::find(int number) {
-  const auto found = std::ranges::find(all_, number, &One::number);
-  if (found == all_.end()) return nullptr;
-  std::rotate(all_.begin(), found, found + 1);
-  return all_.front().field;
+std::shared_ptr<const Field> AnimatedShape::FieldCache::find(int number) {
+  const auto found = std::ranges::find(entries_, number, &Entry::number);
+  if (found == entries_.end()) return nullptr;
+  std::rotate(entries_.begin(), found, found + 1);
+  return entries_.front().field;
 }
 
-void AnimatedShape::Kept::keep(int number, Shared field) {
-  if (all_.size() == most_kept) all_.pop_back();
-  all_.insert(all_.begin(), {number, std::move(field)});
+void AnimatedShape::FieldCache::keep(int number, Shared field) {
+  if (entries_.size() == most_kept) entries_.pop_back();
+  entries_.insert(entries_.begin(), {number, std::move(field)});
 }
 
 AnimatedShape::AnimatedShape(PointCache cache, std::vector<double> frames, const RestShape& shape,

@@ -68,17 +68,17 @@ class AnimatedShape {
   using Shared = std::shared_ptr<const Field>;
 
   // Fields by number, the last ones used.
-  class Kept {
+  class FieldCache {
    public:
     Shared find(int number);
     void keep(int number, Shared field);
 
    private:
-    struct One {
+    struct Entry {
       int number;
       Shared field;
     };
-    std::vector<One> all_;  // the last used one first
+    std::vector<Entry> entries_;  // the last used one first
   };
 
   int frame_of_cycle(int frame) const;
@@ -96,7 +96,7 @@ class AnimatedShape {
   Shared at_rest_;
   std::optional<ShapeCycle> cycle_;
   mutable std::mutex mutex_;  // of what follows
-  mutable Kept samples_, vertices_, node_shapes_;
+  mutable FieldCache samples_, vertices_, node_shapes_;
 };
 
 /// Opens the cache of an animated surface for its shape, checks the samples of the scene's frames,

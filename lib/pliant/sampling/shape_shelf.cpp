@@ -67,7 +67,7 @@ bool has_same_shape(const Surface& a, const Surface& b) {
          a.solver.edges.are_clamped() == b.solver.edges.are_clamped();
 }
 
-struct KeptShape final : Shelf::Item {
+struct ShapeItem final : Shelf::Item {
   Surface surface;
   std::string root;  // as in SceneOrigin
   RestShape shape;
@@ -82,17 +82,17 @@ Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin&
   if (!context.shelf || std::holds_alternative<Mesh>(surface.shape))
     return make_rest_shape(surface, origin, context);
   const Hash key = hash_of(surface.name);
-  const auto kept = context.shelf->find<KeptShape>(key, [&](const KeptShape& one) {
+  const auto found = context.shelf->find<ShapeItem>(key, [&](const ShapeItem& one) {
     return one.root == origin.root && has_same_shape(one.surface, surface);
   });
-  if (kept) {
+  if (found) {
     MemoryShare memory(context.memory);
-    if (memory.try_resize(kept->bytes)) return ReservedShape{kept->shape, std::move(memory)};
+    if (memory.try_resize(found->bytes)) return ReservedShape{found->shape, std::move(memory)};
     // Making it tells what does not fit.
   }
   auto made = make_rest_shape(surface, origin, context);
-  if (made && !kept) {
-    auto shape = std::make_shared<KeptShape>();
+  if (made && !found) {
+    auto shape = std::make_shared<ShapeItem>();
     shape->surface = surface;
     shape->root = origin.root;
     shape->shape = made->shape;

@@ -7,11 +7,11 @@
 namespace pliant {
 
 // Puts a body at the beginning of its cycle.
-Result<void> Bodies::begin_cycle(std::size_t index, KeptStates* kept) {
+Result<void> Bodies::begin_cycle(std::size_t index, SceneStates* states) {
   Body& body = *bodies_[index];
   std::optional<BodyState>& cycle = cycles_[index];
   const bool is_known = cycle.has_value();
-  if (!is_known && kept) cycle = kept->cycle(index, body);
+  if (!is_known && states) cycle = states->cycle(index, body);
   steps_[index].is_read = !is_known && cycle.has_value();
   if (!cycle) {
     auto found = find_cycle(index);
@@ -19,7 +19,7 @@ Result<void> Bodies::begin_cycle(std::size_t index, KeptStates* kept) {
     cycle = *std::move(found);
   }
   body.restore(*cycle);
-  if (!is_known && !steps_[index].is_read && kept) kept->write_cycle(index, body);
+  if (!is_known && !steps_[index].is_read && states) states->write_cycle(index, body);
   return {};
 }
 

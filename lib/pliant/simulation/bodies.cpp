@@ -187,21 +187,21 @@ void Bodies::for_each_body(const std::function<void(std::size_t)>& visit) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) visit(k);
 }
 
-void Bodies::step(int frame, KeptStates* kept, const std::function<bool()>& give_way) {
+void Bodies::step(int frame, SceneStates* states, const std::function<bool()>& give_way) {
   // By reference: a std::function would allocate for so many captures.
-  const auto step_one = [&](std::size_t k) { step(k, frame, kept); };
+  const auto step_one = [&](std::size_t k) { step(k, frame, states); };
   for_each_body(std::ref(step_one));
   const auto lacks_memory = [](const Step& step) {
     return !step.outcome && step.outcome.error().code == ErrorCode::OutOfMemory;
   };
   if (std::any_of(steps_.begin(), steps_.end(), lacks_memory) && give_way && give_way()) {
     for_each_body([&](std::size_t k) {
-      if (lacks_memory(steps_[k])) step(k, frame, kept);
+      if (lacks_memory(steps_[k])) step(k, frame, states);
     });
   }
 }
 
-void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
+void Bodies::step(std::size_t index, int frame, SceneStates* states) {
   Step& step = steps_[index];
   const Surface& surface = scene_.surfaces[index];
   step.is_solved_now = is_solved_at(scene_, surface, frame);
@@ -224,17 +224,17 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
       }
       step.facts = facts_of(step.inputs.body, *plan, surface.solver.combine, std::move(step.facts));
     }
-    step.outcome = begin_cycle(index, kept);
+    step.outcome = begin_cycle(index, states);
     return;
   }
   if (!step.is_solved_now) return;
-  if (kept) {
+  if (states) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
     if (context_.is_stopped()) {
       step.outcome = interrupted();
       return;
     }
-    if (auto stored = kept->read(index, frame, step.inputs, body)) {
+    if (auto stored = states->read(index, frame, step.inputs, body)) {
       body.restore(std::move(stored->state));
       step.facts = std::move(stored->facts);
       step.is_read = true;
@@ -246,9 +246,9 @@ void Bodies::step(std::size_t index, int frame, KeptStates* kept) {
   if (!step.outcome) return;
   step.facts =
       facts_of(step.inputs.body, body.last_step(), surface.solver.combine, std::move(step.facts));
-  if (kept && step.inputs.faults->first().empty()) {
+  if (states && step.inputs.faults->first().empty()) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
-    kept->write(index, frame, body, step.facts);
+    states->write(index, frame, body, step.facts);
   }
 }
 

@@ -15,7 +15,7 @@
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/simulation.hpp"
-#include "pliant/states/kept_states.hpp"
+#include "pliant/states/scene_states.hpp"
 
 namespace pliant {
 
@@ -48,9 +48,9 @@ class Bodies {
   Result<void> make_all();
 
   /// Steps all surfaces from the output of a frame to that of the next, several of them at the same
-  /// time. `kept`: where steps are read and written; null: nowhere. If memory is short, `give_way`
-  /// may release some and return true; then the surfaces that lacked it try again.
-  void step(int frame, KeptStates* kept, const std::function<bool()>& give_way);
+  /// time. `states`: where steps are read and written; null: nowhere. If memory is short,
+  /// `give_way` may release some and return true; then the surfaces that lacked it try again.
+  void step(int frame, SceneStates* states, const std::function<bool()>& give_way);
 
   /// Checks the maps of materials at a frame. Errors: those of `check_maps_at`.
   std::vector<Error> check_maps(int frame) const;
@@ -93,8 +93,8 @@ class Bodies {
                                  Field reuse) const;
   Result<Field> place_vertices(std::size_t index, int frame, const Field& displacement,
                                Field reuse) const;
-  void step(std::size_t index, int frame, KeptStates* kept);
-  Result<void> begin_cycle(std::size_t index, KeptStates* kept);
+  void step(std::size_t index, int frame, SceneStates* states);
+  Result<void> begin_cycle(std::size_t index, SceneStates* states);
   Result<BodyState> find_cycle(std::size_t index);
   Error located(Error error, const Surface& surface, int frame) const;
 

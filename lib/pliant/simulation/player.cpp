@@ -18,12 +18,12 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
       frame_(first_),
       furthest_frame_(first_),
       cache_(first_, options.checkpoint_bytes, &bodies_.memory()),
-      kept_(scene_, sampling_, options.store) {}
+      states_(scene_, sampling_, options.store) {}
 
 Result<void> Simulation::Player::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    kept_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
+    states_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
   }
   return {};
 }
@@ -60,11 +60,11 @@ Result<FrameReport> Simulation::Player::report(int frame, ReportDetail detail) {
 
 Result<std::string> Simulation::Player::state_bytes(int frame) {
   if (auto reached = reach(frame); !reached) return fail(reached.error());
-  return kept_.checkpoint(frame, bodies_.all());
+  return states_.checkpoint(frame, bodies_.all());
 }
 
 Result<int> Simulation::Player::restore(std::string_view state_bytes) {
-  auto found = kept_.read_checkpoint(state_bytes, bodies_.all());
+  auto found = states_.read_checkpoint(state_bytes, bodies_.all());
   if (!found) return fail(found.error());
   frame_ = found->frame;
   bodies_.restore(std::move(found->states));
@@ -77,7 +77,7 @@ Result<void> Simulation::Player::go_to(int frame) {
   const std::optional<int> kept = cache_.latest_until(frame);
   if (frame < frame_ || kept > frame_) rewind(frame);
   // Frames not passed before are read one by one, for their warnings.
-  if (kept_.has_store() && frame <= furthest_frame_) read_latest(frame);
+  if (states_.has_store() && frame <= furthest_frame_) read_latest(frame);
   while (frame_ < frame) {
     if (auto stepped = step(); !stepped) return stepped;
     passed_.add(frame_);
@@ -99,7 +99,8 @@ void Simulation::Player::keep(bool is_going_back) {
 // Advances from the output of frame_ to that of the next frame. What the surfaces say is processed
 // in their order, since they may be solved in parallel. Kept frames give way to the next one.
 Result<void> Simulation::Player::step() {
-  bodies_.step(frame_, kept_.has_store() ? &kept_ : nullptr, [this] { return cache_.give_way(); });
+  bodies_.step(frame_, states_.has_store() ? &states_ : nullptr,
+               [this] { return cache_.give_way(); });
   bool is_solved = false, is_read = false;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const Surface& surface = scene_.surfaces[k];
@@ -134,7 +135,7 @@ void Simulation::Player::rewind(int frame) {
 // than the present frame.
 void Simulation::Player::read_latest(int frame) {
   for (int candidate = frame; candidate > frame_; --candidate) {
-    auto found = kept_.states_at(candidate, bodies_.all());
+    auto found = states_.states_at(candidate, bodies_.all());
     if (!found) continue;
     bodies_.restore(std::move(found->states));
     frame_ = candidate;

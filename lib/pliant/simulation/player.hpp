@@ -13,7 +13,7 @@
 #include "pliant/simulation/bodies.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/states/frame_cache.hpp"
-#include "pliant/states/kept_states.hpp"
+#include "pliant/states/scene_states.hpp"
 
 namespace pliant {
 
@@ -52,7 +52,7 @@ class Simulation::Player {
   int frame_;           // the frame of the bodies' state
   int furthest_frame_;  // computed so far
   FrameCache cache_;
-  KeptStates kept_;
+  SceneStates states_;
   WarningLog warnings_;
   FrameRanges passed_;  // frames whose warnings are known
   FrameCounts frame_counts_;

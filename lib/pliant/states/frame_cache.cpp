@@ -27,7 +27,7 @@ FrameCache::FrameCache(int first_frame, std::size_t byte_budget, MemoryBudget* m
 }
 
 bool FrameCache::wants(int frame) const {
-  return frame > first_frame_ && room_ != std::size_t{0} && !kept_.contains(frame);
+  return frame > first_frame_ && room_ != std::size_t{0} && !entries_.contains(frame);
 }
 
 bool FrameCache::wants_checkpoint(int frame) const { return wants(frame) && is_checkpoint(frame); }
@@ -40,37 +40,37 @@ void FrameCache::keep(int frame, States states) {
   }
   frame_count_ = std::max(frame_count_, frame - first_frame_);
   widen();
-  while (kept_.size() >= *room_ || !share_.try_resize((kept_.size() + 1) * bytes_of_one_)) {
+  while (entries_.size() >= *room_ || !share_.try_resize((entries_.size() + 1) * bytes_of_one_)) {
     // If memory is short, the room is limited to the present use.
-    limit_room(kept_.size());
+    limit_room(entries_.size());
     if (*room_ == 0) return;
     if (turns_.empty()) return;  // only checkpoints are left, and this frame is not one
-    kept_.erase(turns_.front());
+    entries_.erase(turns_.front());
     turns_.pop_front();
   }
-  Kept kept{std::move(states), {}};
-  if (!is_checkpoint(frame)) kept.turn = turns_.insert(turns_.end(), frame);
-  kept_.emplace(frame, std::move(kept));
+  Entry entry{std::move(states), {}};
+  if (!is_checkpoint(frame)) entry.turn = turns_.insert(turns_.end(), frame);
+  entries_.emplace(frame, std::move(entry));
 }
 
 std::optional<int> FrameCache::latest_until(int frame) const {
-  const auto after = kept_.upper_bound(frame);
-  if (after == kept_.begin()) return {};
+  const auto after = entries_.upper_bound(frame);
+  if (after == entries_.begin()) return {};
   return std::prev(after)->first;
 }
 
 const FrameCache::States& FrameCache::use(int frame) {
-  const auto kept = kept_.find(frame);
-  PLIANT_EXPECTS(kept != kept_.end());
-  if (kept->second.turn) turns_.splice(turns_.end(), turns_, *kept->second.turn);
-  return kept->second.states;
+  const auto found = entries_.find(frame);
+  PLIANT_EXPECTS(found != entries_.end());
+  if (found->second.turn) turns_.splice(turns_.end(), turns_, *found->second.turn);
+  return found->second.states;
 }
 
 bool FrameCache::give_way() {
-  if (kept_.empty()) return false;
-  const std::size_t count = kept_.size();
+  if (entries_.empty()) return false;
+  const std::size_t count = entries_.size();
   turns_.clear();
-  kept_.clear();
+  entries_.clear();
   [[maybe_unused]] const bool is_given_back = share_.try_resize(0);
   limit_room(count / 2);
   return true;
@@ -93,9 +93,9 @@ void FrameCache::widen() {
     interval_ *= 2;
   }
   if (interval_ == before) return;
-  for (auto& [frame, kept] : kept_) {
-    if (kept.turn || is_checkpoint(frame)) continue;
-    kept.turn = turns_.insert(turns_.end(), frame);
+  for (auto& [frame, entry] : entries_) {
+    if (entry.turn || is_checkpoint(frame)) continue;
+    entry.turn = turns_.insert(turns_.end(), frame);
   }
 }
 

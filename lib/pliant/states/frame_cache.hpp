@@ -49,7 +49,7 @@ class FrameCache {
   int interval() const { return interval_; }
 
  private:
-  struct Kept {
+  struct Entry {
     States states;
     std::optional<std::list<int>::iterator> turn;  // null for a checkpoint
   };
@@ -65,7 +65,7 @@ class FrameCache {
   std::size_t bytes_of_one_ = 0;
   int interval_ = 1;
   int frame_count_ = 0;  // offered so far, without the first
-  std::map<int, Kept> kept_;
+  std::map<int, Entry> entries_;
   std::list<int> turns_;  // frames that are not checkpoints, the least recently used first
 };
 

@@ -8,19 +8,19 @@
 namespace pliant {
 
 /// The bytes of each key, in the order of their last use. Requires: `mutex` is locked.
-class MemoryStateStore::Kept {
+class MemoryStateStore::Entries {
  public:
-  explicit Kept(std::size_t byte_budget) : byte_budget_(byte_budget) {}
+  explicit Entries(std::size_t byte_budget) : byte_budget_(byte_budget) {}
 
   mutable std::mutex mutex;
 
-  bool contains(const Hash& key) const { return states_.contains(place_of(key)); }
+  bool contains(const Hash& key) const { return entries_.contains(place_of(key)); }
 
   std::optional<std::string> use(const Hash& key, std::size_t most) {
-    const auto state = states_.find(place_of(key));
-    if (state == states_.end() || state->second.bytes.size() > most) return {};
-    turns_.splice(turns_.end(), turns_, state->second.turn);
-    return state->second.bytes;
+    const auto entry = entries_.find(place_of(key));
+    if (entry == entries_.end() || entry->second.bytes.size() > most) return {};
+    turns_.splice(turns_.end(), turns_, entry->second.turn);
+    return entry->second.bytes;
   }
 
   void insert(const Hash& key, std::string_view bytes) {
@@ -29,7 +29,7 @@ class MemoryStateStore::Kept {
     if (bytes.size() > byte_budget_) return;
     while (bytes_ + bytes.size() > byte_budget_) erase(Place(turns_.front()));
     bytes_ += bytes.size();
-    states_.emplace(place, State{std::string(bytes), turns_.insert(turns_.end(), place)});
+    entries_.emplace(place, Entry{std::string(bytes), turns_.insert(turns_.end(), place)});
   }
 
   void erase(const Hash& key) { erase(place_of(key)); }
@@ -39,7 +39,7 @@ class MemoryStateStore::Kept {
 
  private:
   using Place = std::pair<std::uint64_t, std::uint64_t>;
-  struct State {
+  struct Entry {
     std::string bytes;
     std::list<Place>::iterator turn;
   };
@@ -47,49 +47,49 @@ class MemoryStateStore::Kept {
   static Place place_of(const Hash& key) { return {key.high, key.low}; }
 
   void erase(const Place& place) {
-    const auto state = states_.find(place);
-    if (state == states_.end()) return;
-    bytes_ -= state->second.bytes.size();
-    turns_.erase(state->second.turn);
-    states_.erase(state);
+    const auto entry = entries_.find(place);
+    if (entry == entries_.end()) return;
+    bytes_ -= entry->second.bytes.size();
+    turns_.erase(entry->second.turn);
+    entries_.erase(entry);
   }
 
   std::size_t byte_budget_;
   std::size_t bytes_ = 0;
-  std::map<Place, State> states_;
+  std::map<Place, Entry> entries_;
   std::list<Place> turns_;  // least recently used first
 };
 
 MemoryStateStore::MemoryStateStore(std::size_t byte_budget)
-    : kept_(std::make_unique<Kept>(byte_budget)) {}
+    : entries_(std::make_unique<Entries>(byte_budget)) {}
 
 MemoryStateStore::~MemoryStateStore() = default;
 
 bool MemoryStateStore::holds(const Hash& key) {
-  const std::lock_guard lock(kept_->mutex);
-  return kept_->contains(key);
+  const std::lock_guard lock(entries_->mutex);
+  return entries_->contains(key);
 }
 
 std::optional<std::string> MemoryStateStore::read(const Hash& key, std::size_t most) {
-  const std::lock_guard lock(kept_->mutex);
-  return kept_->use(key, most);
+  const std::lock_guard lock(entries_->mutex);
+  return entries_->use(key, most);
 }
 
 void MemoryStateStore::write(const Hash& key, std::string_view bytes) {
-  const std::lock_guard lock(kept_->mutex);
-  kept_->insert(key, bytes);
+  const std::lock_guard lock(entries_->mutex);
+  entries_->insert(key, bytes);
 }
 
 void MemoryStateStore::discard(const Hash& key) {
-  const std::lock_guard lock(kept_->mutex);
-  kept_->erase(key);
+  const std::lock_guard lock(entries_->mutex);
+  entries_->erase(key);
 }
 
 std::size_t MemoryStateStore::bytes() const {
-  const std::lock_guard lock(kept_->mutex);
-  return kept_->bytes();
+  const std::lock_guard lock(entries_->mutex);
+  return entries_->bytes();
 }
 
-std::size_t MemoryStateStore::byte_budget() const { return kept_->byte_budget(); }
+std::size_t MemoryStateStore::byte_budget() const { return entries_->byte_budget(); }
 
 }  // namespace pliant

@@ -52,8 +52,8 @@ class MemoryStateStore final : public StateStore {
   std::size_t byte_budget() const;
 
  private:
-  class Kept;
-  std::unique_ptr<Kept> kept_;
+  class Entries;
+  std::unique_ptr<Entries> entries_;
 };
 
 }  // namespace pliant

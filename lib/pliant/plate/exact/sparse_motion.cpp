@@ -68,7 +68,7 @@ Hash key_of_factors(const MovingMatrix& matrix, double length) {
 
 }  // namespace
 
-struct SparseMotion::KeptPattern final : Shelf::Item {
+struct SparseMotion::PatternItem final : Shelf::Item {
   bool is_of(const SparseMatrix& matrix) const {
     return starts.size() == static_cast<std::size_t>(matrix.cols()) + 1 &&
            rows.size() == static_cast<std::size_t>(matrix.nonZeros()) &&
@@ -80,7 +80,7 @@ struct SparseMotion::KeptPattern final : Shelf::Item {
   FactorPattern pattern;
 };
 
-struct SparseMotion::KeptFactors final : Shelf::Item {
+struct SparseMotion::FactorsItem final : Shelf::Item {
   std::shared_ptr<const MovingMatrix> matrix;
   double length = 0;
   ComplexFactors factors;
@@ -121,15 +121,15 @@ Result<void> SparseMotion::find_pattern(const SparseMatrix& matrix) {
   };
   if (auto reserved = reserve(bytes); !reserved) return reserved;
   const Hash key = context_.shelf ? key_of_pattern(matrix) : Hash();
-  const auto kept = context_.shelf
-                        ? context_.shelf->find<KeptPattern>(
-                              key, [&](const KeptPattern& one) { return one.is_of(matrix); })
-                        : nullptr;
-  if (kept) {
-    pattern_ = std::shared_ptr<const FactorPattern>(kept, &kept->pattern);
+  const auto found = context_.shelf
+                         ? context_.shelf->find<PatternItem>(
+                               key, [&](const PatternItem& one) { return one.is_of(matrix); })
+                         : nullptr;
+  if (found) {
+    pattern_ = std::shared_ptr<const FactorPattern>(found, &found->pattern);
     return reserve(bytes + pattern_->memory());
   }
-  auto made = std::make_shared<KeptPattern>();
+  auto made = std::make_shared<PatternItem>();
   made->pattern = FactorPattern(matrix);
   if (auto reserved = reserve(bytes + made->pattern.memory()); !reserved) return reserved;
   made->pattern.store_entries();
@@ -149,12 +149,12 @@ Result<std::shared_ptr<const SparseMotion::ComplexFactors>> SparseMotion::find_f
     double length, std::size_t count, const std::function<Result<void>(ComplexFactors&)>& make) {
   const Hash key = context_.shelf ? key_of_factors(*matrix_, length) : Hash();
   if (context_.shelf) {
-    const auto kept = context_.shelf->find<KeptFactors>(key, [&](const KeptFactors& one) {
+    const auto found = context_.shelf->find<FactorsItem>(key, [&](const FactorsItem& one) {
       return one.length == length && are_same(*one.matrix, *matrix_);
     });
-    if (kept) return std::shared_ptr<const ComplexFactors>(kept, &kept->factors);
+    if (found) return std::shared_ptr<const ComplexFactors>(found, &found->factors);
   }
-  auto made = std::make_shared<KeptFactors>();
+  auto made = std::make_shared<FactorsItem>();
   made->factors.resize(count);
   if (auto done = make(made->factors); !done) return fail(done.error());
   counts_.factorizations += 2 * static_cast<int>(count);

@@ -58,8 +58,8 @@ class SparseMotion {
     double length = 0;
     std::shared_ptr<const ComplexFactors> of_pole;
   };
-  struct KeptPattern;
-  struct KeptFactors;
+  struct PatternItem;
+  struct FactorsItem;
   // Workspace of one pole: its solution in the order of the factor.
   using Solutions = std::array<std::vector<double>, pole_count>;
 

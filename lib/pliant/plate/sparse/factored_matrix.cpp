@@ -25,7 +25,7 @@ constexpr std::size_t bytes_of_entry = 12;  // of the factor: a double and an in
 }  // namespace
 
 // A factor with the matrix that it is of.
-struct FactoredMatrix::Kept final : Shelf::Item {
+struct FactoredMatrix::FactorItem final : Shelf::Item {
   SparseMatrix matrix;
   std::unique_ptr<const SparseFactor> factor = {};  // null: it has supernodes
   std::shared_ptr<const SupernodalFactor::Numbers> supernodes = {};
@@ -59,9 +59,10 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
   const SparseMatrix& matrix = *assembled;
   const Hash key = shelf_ ? key_of(matrix) : Hash();
   if (shelf_) {
-    const auto kept = shelf_->find<Kept>(
-        key, [&](const Kept& one) { return matrix_bytes(one.matrix) == matrix_bytes(matrix); });
-    if (kept) return use(size, *kept);
+    const auto item = shelf_->find<FactorItem>(key, [&](const FactorItem& one) {
+      return matrix_bytes(one.matrix) == matrix_bytes(matrix);
+    });
+    if (item) return use(size, *item);
   }
   if (!is_analyzed_) {
     if (is_stopped(should_stop_)) return interrupted();
@@ -92,35 +93,35 @@ Hash FactoredMatrix::key_of(const SparseMatrix& matrix) const {
 }
 
 // Reserves what making it would.
-Result<void> FactoredMatrix::use(long size, const Kept& kept) {
-  if (auto taken = take_factor(size, kept.entries); !taken) return taken;
-  if (!kept.supernodes) {
-    factor_->share(*kept.factor);
+Result<void> FactoredMatrix::use(long size, const FactorItem& item) {
+  if (auto taken = take_factor(size, item.entries); !taken) return taken;
+  if (!item.supernodes) {
+    factor_->share(*item.factor);
     return {};
   }
-  const std::size_t bytes = kept.supernode_bytes;
+  const std::size_t bytes = item.supernode_bytes;
   if (auto taken = take(size, memory_.bytes() + bytes); !taken) return taken;
-  supernodes_->use(kept.supernodes);
+  supernodes_->use(item.supernodes);
   has_supernodes_ = true;
   factor_->release();
   return take(size, bytes_to_factorize * size + bytes);
 }
 
 void FactoredMatrix::keep(const Hash& key, const SparseMatrix& matrix, std::size_t entries) try {
-  auto kept = std::make_shared<Kept>();
-  kept->entries = entries;
+  auto item = std::make_shared<FactorItem>();
+  item->entries = entries;
   if (has_supernodes_) {
-    kept->supernodes = supernodes_->numbers();
-    kept->supernode_bytes = memory_.bytes() - bytes_to_factorize * matrix.cols();
+    item->supernodes = supernodes_->numbers();
+    item->supernode_bytes = memory_.bytes() - bytes_to_factorize * matrix.cols();
   } else {
     auto factor = make_sparse_factor(choice_);
     if (!factor->share(*factor_)) return;
-    kept->factor = std::move(factor);
+    item->factor = std::move(factor);
   }
-  kept->matrix = matrix;
-  std::size_t bytes = has_supernodes_ ? kept->supernode_bytes : bytes_of_entry * entries;
+  item->matrix = matrix;
+  std::size_t bytes = has_supernodes_ ? item->supernode_bytes : bytes_of_entry * entries;
   for (const std::string_view part : matrix_bytes(matrix)) bytes += part.size();
-  shelf_->keep(key, std::move(kept), bytes);
+  shelf_->keep(key, std::move(item), bytes);
 } catch (const std::bad_alloc&) {  // a shelf is not needed
 }
 

@@ -43,12 +43,12 @@ class FactoredMatrix {
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
-  struct Kept;
+  struct FactorItem;
 
   Result<void> take(long size, std::size_t bytes);
   Result<void> take_factor(long size, std::size_t entries);
   Result<void> join_columns(long size);
-  Result<void> use(long size, const Kept& kept);
+  Result<void> use(long size, const FactorItem& item);
   Hash key_of(const SparseMatrix& matrix) const;
   void keep(const Hash& key, const SparseMatrix& matrix, std::size_t entries);
 

@@ -42,8 +42,8 @@ class BlockParts {
 // Lays out the workspace; with a null block it only counts.
 std::size_t SpectralMotion::carve(double* block) {
   BlockParts parts(block);
-  for (KeptLoad& kept : kept_) {
-    kept.nodes = parts.take(long{plate_.rows_ - 2} * (plate_.columns_ - 2));
+  for (CachedLoad& cached : cached_loads_) {
+    cached.nodes = parts.take(long{plate_.rows_ - 2} * (plate_.columns_ - 2));
   }
   for (int k = 0; k < 4; ++k) {
     SpectralPlate::Parity& parity = plate_.parities_[k];
@@ -52,7 +52,7 @@ std::size_t SpectralMotion::carve(double* block) {
     for (int component = 0; component < 3; ++component) {
       PartWork& work = work_[k][component];
       ExactView& view = work.view;
-      for (double*& sines : kept_[component].sines[k]) sines = parts.take(size);
+      for (double*& sines : cached_loads_[component].sines[k]) sines = parts.take(size);
       work.growth = parts.take(size);
       work.w[0] = parity.displacement[component];
       work.v[0] = parity.pending[component];
@@ -88,7 +88,7 @@ Result<void> SpectralMotion::take(const PlateSystem& system) {
     return fail(no_memory_to_solve(unknown_count(grid), memory_.complaint(bytes)));
   }
   if (count != numbers_.count()) numbers_ = NumberBlock(count);
-  for (KeptLoad& kept : kept_) kept.is_kept = false;
+  for (CachedLoad& cached : cached_loads_) cached.is_valid = false;
   constexpr std::size_t at_a_time = std::size_t{1} << 20U;
   for (std::size_t first = 0; first < count; first += at_a_time) {
     if (context_.is_stopped()) return interrupted();
@@ -242,14 +242,14 @@ bool SpectralMotion::finish(int count, const SubStep& length, const Tables& tabl
   return !is_stopped;
 }
 
-bool SpectralMotion::is_kept(const ConstNodesView& load, int component) const {
-  const KeptLoad& kept = kept_[component];
-  if (!kept.is_kept) return false;
+bool SpectralMotion::is_cached(const ConstNodesView& load, int component) const {
+  const CachedLoad& cached = cached_loads_[component];
+  if (!cached.is_valid) return false;
   const int columns = plate_.columns_ - 2;
   for (int j = 0; j < plate_.rows_ - 2; ++j) {
     const double* const row = load.first + component * load.component_stride + j * load.row_stride;
     // By bits: -0 has other ones than 0.
-    if (std::memcmp(kept.nodes + long{j} * columns, row, columns * sizeof(double)) != 0) {
+    if (std::memcmp(cached.nodes + long{j} * columns, row, columns * sizeof(double)) != 0) {
       return false;
     }
   }
@@ -262,8 +262,8 @@ bool SpectralMotion::take_loads(const ConstNodesView& first_load, const ConstNod
   const auto transform = [&](const ConstNodesView& load, int next) {
     for (int k = 0; k < 4; ++k) {
       for (int component = 0; component < 3; ++component) {
-        const KeptLoad& kept = kept_[component];
-        plate_.parities_[k].growth[component] = kept.sines[k][(kept.place + next) % 2];
+        const CachedLoad& cached = cached_loads_[component];
+        plate_.parities_[k].growth[component] = cached.sines[k][(cached.place + next) % 2];
       }
     }
     plate_.to_sines(load, &SpectralPlate::Parity::growth);
@@ -271,7 +271,7 @@ bool SpectralMotion::take_loads(const ConstNodesView& first_load, const ConstNod
   const std::array<bool, 3> is_still = {plate_.is_still_[0], plate_.is_still_[1],
                                         plate_.is_still_[2]};
   for (int component = 0; component < 3; ++component) {
-    plate_.is_still_[component] = is_still[component] || is_kept(first_load, component);
+    plate_.is_still_[component] = is_still[component] || is_cached(first_load, component);
   }
   transform(first_load, 0);
   std::copy(is_still.begin(), is_still.end(), plate_.is_still_);
@@ -280,18 +280,18 @@ bool SpectralMotion::take_loads(const ConstNodesView& first_load, const ConstNod
   const ConstNodesView& load = grows ? last_load : first_load;
   for (int component = 0; component < 3; ++component) {
     if (is_still[component]) continue;
-    KeptLoad& kept = kept_[component];
+    CachedLoad& cached = cached_loads_[component];
     for (int k = 0; k < 4; ++k) {
       ExactView& view = work_[k][component].view;
-      view.load = kept.sines[k][kept.place];
+      view.load = cached.sines[k][cached.place];
       view.growth = grows ? work_[k][component].growth : nullptr;
     }
-    if (grows) kept.place = 1 - kept.place;
-    kept.is_kept = true;
+    if (grows) cached.place = 1 - cached.place;
+    cached.is_valid = true;
     const int columns = plate_.columns_ - 2;
     for (int j = 0; j < plate_.rows_ - 2; ++j) {
       std::copy_n(load.first + component * load.component_stride + j * load.row_stride, columns,
-                  kept.nodes + long{j} * columns);
+                  cached.nodes + long{j} * columns);
     }
   }
   return grows;

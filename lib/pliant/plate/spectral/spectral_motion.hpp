@@ -48,15 +48,15 @@ class SpectralMotion {
 
   // One component of a load and its transform, which the next interval begins with if the load is
   // keyed.
-  struct KeptLoad {
-    bool is_kept = false;
+  struct CachedLoad {
+    bool is_valid = false;
     double* nodes = nullptr;   // row by row
     double* sines[4][2] = {};  // by parity: the transform and room for the next one, in turn
     int place = 0;             // that of the transform
   };
 
   Result<void> take(const PlateSystem& system);
-  bool is_kept(const ConstNodesView& load, int component) const;
+  bool is_cached(const ConstNodesView& load, int component) const;
   bool take_loads(const ConstNodesView& first_load, const ConstNodesView& last_load);
   Result<Tables*> tables_for(double length);
   std::size_t carve(double* block);
@@ -77,7 +77,7 @@ class SpectralMotion {
   double beta_ = 0, delta_ = 0;
   std::size_t table_size_ = 0;  // numbers
   PartWork work_[4][3];
-  KeptLoad kept_[3];
+  CachedLoad cached_loads_[3];
   SpectralPlate::Parts parts_;
   std::list<Tables> tables_;  // the last used first
 };

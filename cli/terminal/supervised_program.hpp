@@ -18,22 +18,22 @@ namespace pliant::cli {
 ///
 /// Between the command and the program is its keeper, which waits for the end of either, kills what
 /// is left of the program, and holds the folder meanwhile.
-class KeptProgram {
+class SupervisedProgram {
  public:
   /// Starts a program of the PATH, as `start_child` does. The folder is its working folder, and the
   /// one for its temporary files. Errors: Unwritable, with the reason.
-  static Result<KeptProgram> start(std::vector<std::string> words, const ChildStreams& streams,
-                                   const ScratchFolder& folder);
+  static Result<SupervisedProgram> start(std::vector<std::string> words,
+                                         const ChildStreams& streams, const ScratchFolder& folder);
 
-  KeptProgram(KeptProgram&&) = default;
-  KeptProgram& operator=(KeptProgram&&) = delete;
-  ~KeptProgram();
+  SupervisedProgram(SupervisedProgram&&) = default;
+  SupervisedProgram& operator=(SupervisedProgram&&) = delete;
+  ~SupervisedProgram();
 
   /// Its exit code, if it has ended; -1: a signal ended it.
   std::optional<int> code();
 
  private:
-  explicit KeptProgram(Keeper keeper) : keeper_(std::move(keeper)) {}
+  explicit SupervisedProgram(Keeper keeper) : keeper_(std::move(keeper)) {}
   void end_orphans();
 
   Keeper keeper_;

@@ -1,4 +1,4 @@
-#include "cli/terminal/kept_program.hpp"
+#include "cli/terminal/supervised_program.hpp"
 
 #include <array>
 #include <cerrno>
@@ -122,8 +122,9 @@ int keep_program(const std::string& folder, char** words, const sigset_t& signal
   return code.value_or(ended_by_signal + SIGKILL);
 }
 
-Result<KeptProgram> KeptProgram::start(std::vector<std::string> words, const ChildStreams& streams,
-                                       const ScratchFolder& folder) {
+Result<SupervisedProgram> SupervisedProgram::start(std::vector<std::string> words,
+                                                   const ChildStreams& streams,
+                                                   const ScratchFolder& folder) {
   const auto cannot = [&](std::string_view reason) {
     return fail(ErrorCode::Unwritable, fmt::format("cannot start {}: {}", words.front(), reason));
   };
@@ -135,22 +136,22 @@ Result<KeptProgram> KeptProgram::start(std::vector<std::string> words, const Chi
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // see `end_orphans`
   auto keeper = Keeper::start(std::move(all), streams);
   if (!keeper) return cannot(keeper.error().message);
-  return KeptProgram(*std::move(keeper));
+  return SupervisedProgram(*std::move(keeper));
 }
 
-KeptProgram::~KeptProgram() {
+SupervisedProgram::~SupervisedProgram() {
   keeper_.end();
   end_orphans();
 }
 
-std::optional<int> KeptProgram::code() {
+std::optional<int> SupervisedProgram::code() {
   const auto code = keeper_.code();
   end_orphans();
   return code && *code >= ended_by_signal ? -1 : code;
 }
 
 // What the program of a killed keeper has started is ours then.
-void KeptProgram::end_orphans() {
+void SupervisedProgram::end_orphans() {
   if (keeper_.code() == -1) end_children_except(&is_pliant);
 }
 

@@ -26,10 +26,10 @@ struct FrameStates {
 /// The states of a scene's surfaces beyond one run: in a store, each under its key, and as the
 /// bytes of a checkpoint. `bodies` are those of all surfaces, in the order of the scene. Not for
 /// programs.
-class KeptStates {
+class SceneStates {
  public:
   /// Requires: scene and sampling outlive it. `store` null: there are checkpoints only.
-  KeptStates(const Scene& scene, const SceneSampling& sampling, StateStore* store)
+  SceneStates(const Scene& scene, const SceneSampling& sampling, StateStore* store)
       : scene_(scene), first_(first_frame_of_run(scene)), sampling_(sampling), store_(store) {}
 
   /// Adds the next surface, by the key of its body at rest.

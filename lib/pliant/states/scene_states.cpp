@@ -1,4 +1,4 @@
-#include "pliant/states/kept_states.hpp"
+#include "pliant/states/scene_states.hpp"
 
 #include <cstdint>
 #include <utility>
@@ -15,13 +15,13 @@ constexpr std::string_view checkpoint_magic = "pliant checkpoint 1\n";
 }  // namespace
 
 // Appends the key after the step at a frame.
-void KeptStates::append_to(KeyChain& chain, std::size_t surface, int frame) const {
+void SceneStates::append_to(KeyChain& chain, std::size_t surface, int frame) const {
   if (!is_solved_at(scene_, scene_.surfaces[surface], frame)) return chain.append(nullptr, frame);
   const SurfaceInputs inputs = sample_inputs(scene_, sampling_, surface, frame);
   chain.append(&inputs, frame);
 }
 
-const std::optional<Hash>& KeptStates::key(std::size_t surface, int frame) {
+const std::optional<Hash>& SceneStates::key(std::size_t surface, int frame) {
   KeyChain& chain = keys_[surface];
   const Surface& of = scene_.surfaces[surface];
   const int start = first_solved_frame(scene_, of);
@@ -33,7 +33,7 @@ const std::optional<Hash>& KeptStates::key(std::size_t surface, int frame) {
 }
 
 // `frame`: counted from the beginning of the first cycle, and less than its length.
-const std::optional<Hash>& KeptStates::key_in_cycle(std::size_t surface, int frame) {
+const std::optional<Hash>& SceneStates::key_in_cycle(std::size_t surface, int frame) {
   const Surface& of = scene_.surfaces[surface];
   const int start = first_solved_frame(scene_, of), length = of.solver.loop.value();
   std::optional<KeyChain>& cycle = cycles_[surface];
@@ -47,13 +47,13 @@ const std::optional<Hash>& KeptStates::key_in_cycle(std::size_t surface, int fra
   return cycle->at(frame);
 }
 
-Hash KeptStates::sealing_key(std::size_t surface, int frame) {
+Hash SceneStates::sealing_key(std::size_t surface, int frame) {
   const std::optional<Hash>& known = key(surface, frame);
   return known ? *known : unnamed_key(keys_[surface].rest());
 }
 
-std::optional<StoredState> KeptStates::read(std::size_t surface, int frame,
-                                            const SurfaceInputs& inputs, const Body& body) {
+std::optional<StoredState> SceneStates::read(std::size_t surface, int frame,
+                                             const SurfaceInputs& inputs, const Body& body) {
   KeyChain& keys = keys_[surface];
   const bool has_loop = scene_.surfaces[surface].solver.loop.has_value();
   if (!has_loop && keys.length() == frame + 1 - first_) keys.append(&inputs, frame);
@@ -64,12 +64,12 @@ std::optional<StoredState> KeptStates::read(std::size_t surface, int frame,
   return stored;
 }
 
-void KeptStates::write(std::size_t surface, int frame, const Body& body, const StepFacts& facts) {
+void SceneStates::write(std::size_t surface, int frame, const Body& body, const StepFacts& facts) {
   const std::optional<Hash>& after = key(surface, frame + 1);
   if (after) store_->write(*after, to_bytes(*after, body.state(), facts, body.rest()));
 }
 
-std::optional<BodyState> KeptStates::cycle(std::size_t surface, const Body& body) {
+std::optional<BodyState> SceneStates::cycle(std::size_t surface, const Body& body) {
   const std::optional<Hash>& key = key_in_cycle(surface, 0);
   if (!store_ || !key) return {};
   auto stored = read_stored(*store_, *key, body.rest(), parts_of(body.state()));
@@ -77,13 +77,13 @@ std::optional<BodyState> KeptStates::cycle(std::size_t surface, const Body& body
   return std::move(stored->state);
 }
 
-void KeptStates::write_cycle(std::size_t surface, const Body& body) {
+void SceneStates::write_cycle(std::size_t surface, const Body& body) {
   const std::optional<Hash>& key = key_in_cycle(surface, 0);
   if (store_ && key) store_->write(*key, to_bytes(*key, body.state(), {}, body.rest()));
 }
 
-std::optional<FrameStates> KeptStates::states_at(int frame,
-                                                 std::span<const std::unique_ptr<Body>> bodies) {
+std::optional<FrameStates> SceneStates::states_at(int frame,
+                                                  std::span<const std::unique_ptr<Body>> bodies) {
   const auto is_rest = [&](std::size_t k) { return key(k, frame) == keys_[k].rest(); };
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (!key(k, frame) || (!is_rest(k) && !store_->holds(*key(k, frame)))) return {};
@@ -102,7 +102,7 @@ std::optional<FrameStates> KeptStates::states_at(int frame,
   return found;
 }
 
-std::string KeptStates::checkpoint(int frame, std::span<const std::unique_ptr<Body>> bodies) {
+std::string SceneStates::checkpoint(int frame, std::span<const std::unique_ptr<Body>> bodies) {
   std::string bytes(checkpoint_magic);
   append(bytes, static_cast<std::uint64_t>(std::int64_t{frame}));
   append(bytes, bodies.size());
@@ -116,8 +116,8 @@ std::string KeptStates::checkpoint(int frame, std::span<const std::unique_ptr<Bo
   return bytes;
 }
 
-Result<FrameStates> KeptStates::read_checkpoint(std::string_view bytes,
-                                                std::span<const std::unique_ptr<Body>> bodies) {
+Result<FrameStates> SceneStates::read_checkpoint(std::string_view bytes,
+                                                 std::span<const std::unique_ptr<Body>> bodies) {
   const auto refuse = [](std::string message) {
     return fail(ErrorCode::InvalidInput, "cannot restore the state: " + std::move(message));
   };
