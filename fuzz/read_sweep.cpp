@@ -39,7 +39,7 @@ const fs::path& scratch() {
 void check_takes(const Takes& takes) {
   require(takes.count() >= 1 && takes.count() <= most_takes);
   for (const std::size_t take : {std::size_t{0}, takes.count() / 2, takes.count() - 1}) {
-    require(takes.scene_of(take) < takes.parts().scene_count);
+    require(takes.scene_of(take) < takes.plan().scene_count);
     const auto texts = takes.texts(take);
     require(texts.size() == takes.paths().size());
     for (std::size_t path = 0; path < std::min<std::size_t>(texts.size(), 8); ++path)

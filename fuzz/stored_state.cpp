@@ -36,15 +36,15 @@ std::string sealed(std::string_view content, const Hash& of_state) {
   return bytes;
 }
 
-void check_state(const StoredState& stored, const Field& rest, StateParts parts) {
+void check_state(const StoredState& stored, const Field& rest, StateLayout layout) {
   const BodyState& state = stored.state;
-  require(parts_of(state) == parts);
+  require(layout_of(state) == layout);
   require(state.positions.rows() == node_count && state.positions.allFinite());
   require(state.velocities.rows() == node_count && state.velocities.allFinite());
   require(state.plastic.allFinite());
-  if (parts.has_push) require(state.last.loads.allFinite());
+  if (layout.has_push) require(state.last.loads.allFinite());
   const std::string bytes = to_bytes(key, state, stored.facts, rest);
-  const auto again = from_bytes(bytes, key, rest, parts);
+  const auto again = from_bytes(bytes, key, rest, layout);
   require(again && again->state == state && again->facts == stored.facts);
   require(to_bytes(key, again->state, again->facts, rest) == bytes);
 }
@@ -55,16 +55,16 @@ struct Continued {
   Hash of_state;
 };
 
-std::optional<Continued> continued(StateParts parts) {
+std::optional<Continued> continued(StateLayout layout) {
   std::string solver;
-  if (parts.has_marks) solver += R"( release="recover")";
-  if (parts.has_push) solver += R"( integrator="exact")";
-  auto made = tiny_simulation(solver, parts.plastic_places > 0);
+  if (layout.has_marks) solver += R"( release="recover")";
+  if (layout.has_push) solver += R"( integrator="exact")";
+  auto made = tiny_simulation(solver, layout.plastic_places > 0);
   if (!made) return {};  // some parts exclude others
   const auto bytes = made->state_bytes(2);
   require(bytes.has_value());
   const std::size_t state = bytes->find(state_magic);
-  require(state != std::string::npos && parts_of(made->state(0)) == parts);
+  require(state != std::string::npos && layout_of(made->state(0)) == layout);
   ByteReader reader(std::string_view(*bytes).substr(state + state_magic.size()));
   const Hash of_state = reader.hash();
   return Continued{*std::move(made), of_state};
@@ -95,25 +95,25 @@ void check_run(Continued& run, std::string_view content) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
-  const StateParts parts{(bytes[0] & 1) != 0, (bytes[0] & 2) != 0,
-                         (bytes[0] & 4) != 0 ? node_count : 0};
+  const StateLayout layout{(bytes[0] & 1) != 0, (bytes[0] & 2) != 0,
+                           (bytes[0] & 4) != 0 ? node_count : 0};
   const bool is_raw = (bytes[0] & 8) != 0;
   const std::string_view content = text_of(bytes + 1, size - 1);
   const std::string file = is_raw ? std::string(content) : sealed(content, key);
   const Field rest = rest_of_sheet();
-  const auto stored = from_bytes(file, key, rest, parts);
-  if (stored) check_state(*stored, rest, parts);
+  const auto stored = from_bytes(file, key, rest, layout);
+  if (stored) check_state(*stored, rest, layout);
 
   static std::map<int, std::optional<Continued>> runs;
   const int body = bytes[0] & 7;
-  if (!runs.contains(body)) runs.emplace(body, continued(parts));
+  if (!runs.contains(body)) runs.emplace(body, continued(layout));
   if (runs.at(body)) check_run(*runs.at(body), content);
 
   // A store forgets what is no state.
   MemoryStateStore store(std::size_t{1} << 20);
   store.write(key, file);
   if (!store.holds(key)) return 0;
-  const auto read = read_stored(store, key, rest, parts);
+  const auto read = read_stored(store, key, rest, layout);
   if (read) require(stored && read->state == stored->state && read->facts == stored->facts);
   if (!stored) require(!read && !store.holds(key));
   return 0;

@@ -27,11 +27,11 @@ Result<void> check_frame(const SweepFolder& folder, std::size_t take, int frame)
 
 // The axes, the slowest first: how many rows each has, and which columns it gives.
 Json axes_of(const SweepFolder& folder) {
-  const TakeParts& parts = folder.sweep().takes().parts();
+  const TakePlan& plan = folder.sweep().takes().plan();
   Json axes = Json::array();
-  const std::size_t first = parts.scene_count > 1 ? 1 : 0;
-  if (first > 0) axes.push_back({{"count", parts.scene_count}, {"paths", {0}}});
-  for (const TakeAxis& axis : parts.axes) {
+  const std::size_t first = plan.scene_count > 1 ? 1 : 0;
+  if (first > 0) axes.push_back({{"count", plan.scene_count}, {"paths", {0}}});
+  for (const TakeAxis& axis : plan.axes) {
     Json paths = Json::array();
     for (const std::size_t path : axis.paths) paths.push_back(first + path);
     axes.push_back({{"count", axis.count}, {"paths", std::move(paths)}});

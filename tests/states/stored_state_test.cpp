@@ -11,31 +11,31 @@ using namespace pliant;
 namespace {
 
 const Hash key{1, 2};
-const StateParts everything{true, true, 11};
+const StateLayout everything{true, true, 11};
 
 // A state with some nodes away from rest, some only in their position, velocity or mark.
-StoredState some_state(const Field& rest, StateParts parts, double share, unsigned seed) {
+StoredState some_state(const Field& rest, StateLayout layout, double share, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> number(-1, 1);
   const auto with_chance = [&](double chance) { return number(random) < 2 * chance - 1; };
   StoredState stored{{rest, Field::Zero(rest.rows(), 3)}, {}};
-  if (parts.has_marks) stored.state.unsettled.assign(static_cast<std::size_t>(rest.rows()), 0);
+  if (layout.has_marks) stored.state.unsettled.assign(static_cast<std::size_t>(rest.rows()), 0);
   LastPush& push = stored.state.last;
-  if (parts.has_push) {
+  if (layout.has_push) {
     push.loads = Field::Zero(rest.rows(), 3);
     push.unknowns.assign(static_cast<std::size_t>(rest.rows()), 0);
     push.tangents.sv0 = {0.5, -0.0, number(random)};
   }
-  stored.state.plastic.setZero(parts.plastic_places, 9);
-  for (Eigen::Index place = 0; place < parts.plastic_places; ++place) {
+  stored.state.plastic.setZero(layout.plastic_places, 9);
+  for (Eigen::Index place = 0; place < layout.plastic_places; ++place) {
     if (with_chance(share)) stored.state.plastic(place, place % 7) = number(random);
   }
   for (Eigen::Index node = 0; node < rest.rows(); ++node) {
     const bool is_away = with_chance(share);
     if (is_away && with_chance(0.7)) stored.state.positions(node, node % 3) = number(random);
     if (is_away && with_chance(0.7)) stored.state.velocities(node, 1) = number(random);
-    if (is_away && parts.has_marks) stored.state.unsettled[static_cast<std::size_t>(node)] = 1;
-    if (!parts.has_push || !with_chance(share)) continue;
+    if (is_away && layout.has_marks) stored.state.unsettled[static_cast<std::size_t>(node)] = 1;
+    if (!layout.has_push || !with_chance(share)) continue;
     push.unknowns[static_cast<std::size_t>(node)] = 1;
     if (with_chance(0.8)) push.loads.row(node) << 0, number(random), -0.0;
   }
@@ -61,24 +61,24 @@ std::string bytes_of(const StoredState& stored, const Field& rest) {
 }  // namespace
 
 TEST_CASE("a state comes back from its bytes", "[states][stored]") {
-  const StateParts parts{GENERATE(false, true), GENERATE(false, true), GENERATE(0, 37, 80)};
+  const StateLayout layout{GENERATE(false, true), GENERATE(false, true), GENERATE(0, 37, 80)};
   const double share = GENERATE(0.0, 0.1, 0.5, 1.0);
   const Field rest = some_rest(37);
-  const StoredState stored = some_state(rest, parts, share, 3);
+  const StoredState stored = some_state(rest, layout, share, 3);
   const std::string bytes = bytes_of(stored, rest);
-  const auto back = from_bytes(bytes, key, rest, parts);
+  const auto back = from_bytes(bytes, key, rest, layout);
   REQUIRE(back);
   CHECK(back->state == stored.state);
   CHECK(back->facts == stored.facts);
   CHECK(bytes_of(*back, rest) == bytes);
-  CHECK_FALSE(from_bytes(bytes, {1, 3}, rest, parts));
-  const auto [marks, push, places] = parts;
+  CHECK_FALSE(from_bytes(bytes, {1, 3}, rest, layout));
+  const auto [marks, push, places] = layout;
   CHECK_FALSE(from_bytes(bytes, key, rest, {!marks, push, places}));
   CHECK_FALSE(from_bytes(bytes, key, rest, {marks, !push, places}));
   CHECK_FALSE(from_bytes(bytes, key, rest, {marks, push, places > 0 ? 0 : 37}));
-  CHECK_FALSE(from_bytes(bytes, key, some_rest(36), parts));
+  CHECK_FALSE(from_bytes(bytes, key, some_rest(36), layout));
   if (share == 0)
-    CHECK(bytes.size() < (parts.has_push ? 256 : 128));  // nodes at rest need no bytes
+    CHECK(bytes.size() < (layout.has_push ? 256 : 128));  // nodes at rest need no bytes
 }
 
 TEST_CASE("what no node has away from rest takes nothing", "[states][stored]") {

@@ -113,19 +113,19 @@ TEST_CASE("a table that may be any file is not quoted", "[sweep][takes]") {
              contains_text("column 1: --set secret.x=1 sets the same value"));
 }
 
-TEST_CASE("takes come back from their parts", "[sweep][takes]") {
+TEST_CASE("takes come back from their plan", "[sweep][takes]") {
   const Takes takes = Takes::make({.vary = {"a.x=1,2", "b.y=0:10"}, .samples = 5}).value();
-  const Takes again = Takes::of(takes.parts()).value();
+  const Takes again = Takes::of(takes.plan()).value();
   REQUIRE(again.count() == takes.count());
   for (std::size_t take = 0; take < takes.count(); ++take)
     CHECK(texts_of(again, take) == texts_of(takes, take));
-  TakeParts broken = takes.parts();
+  TakePlan broken = takes.plan();
   broken.axes[0].texts.push_back("1");
   CHECK_FALSE(Takes::of(broken));
-  broken = takes.parts();
+  broken = takes.plan();
   broken.axes[0].paths[0] = 7;
   CHECK_FALSE(Takes::of(broken));
-  broken = takes.parts();
+  broken = takes.plan();
   broken.axes.pop_back();
   CHECK_FALSE(Takes::of(broken));
 }

@@ -48,13 +48,13 @@ bool steps_only(const Segments& segments) {
 }
 
 /// A cursor through the segments of a component; beyond them it is constant.
-class ComponentParts {
+class SegmentCursor {
  public:
-  explicit ComponentParts(Segments segments) : segments_(std::move(segments)) {}
+  explicit SegmentCursor(Segments segments) : segments_(std::move(segments)) {}
 
-  /// The part over an interval, which contains no key of the segments. Requires: later than those
-  /// before.
-  Segment part(double start, double end) {
+  /// The segment over an interval, which contains no key of the segments. Requires: later than
+  /// those before.
+  Segment over(double start, double end) {
     const auto& segments = segments_.segments;
     while (next_ < segments.size() && segments[next_].end <= start) ++next_;
     if (next_ == segments.size() || end <= segments[next_].start) {
@@ -107,11 +107,11 @@ SampledKeys sampled_segments(const HeldChannel& channel) {
   bool are_lines = true;
   for (std::size_t c = 0; c < channel.components.size(); ++c) {
     const Segments& segments = channel.components[c].segments;
-    ComponentParts parts(segments);
+    SegmentCursor cursor(segments);
     for (const Segment& segment : segments.segments)
       are_lines = are_lines && segment.kind != Segment::Kind::Bezier;
     for (std::size_t k = 0; k + 1 < frames.size(); ++k) {
-      const Segment part = parts.part(frames[k], frames[k + 1]);
+      const Segment part = cursor.over(frames[k], frames[k + 1]);
       result.keys[k].value[c] = part.from;
       result.keys[k + 1].value[c] = part.to;
       result.keys[k].out[c] = slope_at_start(part);

@@ -59,7 +59,7 @@ std::optional<StoredState> SceneStates::read(std::size_t surface, int frame,
   if (!has_loop && keys.length() == frame + 1 - first_) keys.append(&inputs, frame);
   const std::optional<Hash>& after = key(surface, frame + 1);
   if (!after) return {};
-  auto stored = read_stored(*store_, *after, body.rest(), parts_of(body.state()));
+  auto stored = read_stored(*store_, *after, body.rest(), layout_of(body.state()));
   if (stored && stored->facts.forces.size() != inputs.body.forces.size()) return {};
   return stored;
 }
@@ -72,7 +72,7 @@ void SceneStates::write(std::size_t surface, int frame, const Body& body, const 
 std::optional<BodyState> SceneStates::cycle(std::size_t surface, const Body& body) {
   const std::optional<Hash>& key = key_in_cycle(surface, 0);
   if (!store_ || !key) return {};
-  auto stored = read_stored(*store_, *key, body.rest(), parts_of(body.state()));
+  auto stored = read_stored(*store_, *key, body.rest(), layout_of(body.state()));
   if (!stored) return {};
   return std::move(stored->state);
 }
@@ -95,7 +95,7 @@ std::optional<FrameStates> SceneStates::states_at(int frame,
       continue;
     }
     auto stored =
-        read_stored(*store_, *key(k, frame), bodies[k]->rest(), parts_of(bodies[k]->state()));
+        read_stored(*store_, *key(k, frame), bodies[k]->rest(), layout_of(bodies[k]->state()));
     if (!stored) return {};
     found.states.push_back(std::move(stored->state));
   }
@@ -139,7 +139,7 @@ Result<FrameStates> SceneStates::read_checkpoint(std::string_view bytes,
     const std::string_view state = reader.take(reader.number());
     if (!reader.is_sound()) return refuse("it is damaged");
     const Hash of_scene = sealing_key(k, found.frame);
-    auto stored = from_bytes(state, of_scene, bodies[k]->rest(), parts_of(bodies[k]->state()));
+    auto stored = from_bytes(state, of_scene, bodies[k]->rest(), layout_of(bodies[k]->state()));
     if (!stored) {
       return refuse(fmt::format(
           "surface \"{}\", its channels or forces before frame {}, or the engine is not the same",

@@ -236,14 +236,14 @@ std::size_t most_bytes(Eigen::Index node_count, Eigen::Index plastic_count) {
          (places + 1) / 2 * sizeof(Run) + places * 9 * sizeof(double);
 }
 
-std::uint64_t number_of(StateParts parts) {
-  return (parts.has_marks ? 1u : 0u) | (parts.has_push ? 2u : 0u) |
-         (parts.plastic_places > 0 ? 4u : 0u);
+std::uint64_t number_of(StateLayout layout) {
+  return (layout.has_marks ? 1u : 0u) | (layout.has_push ? 2u : 0u) |
+         (layout.plastic_places > 0 ? 4u : 0u);
 }
 
 }  // namespace
 
-StateParts parts_of(const BodyState& state) {
+StateLayout layout_of(const BodyState& state) {
   return {!state.unsettled.empty(), !state.last.unknowns.empty(), state.plastic.rows()};
 }
 
@@ -259,8 +259,8 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   bytes += magic;
   append(bytes, key);
   append(bytes, static_cast<std::uint64_t>(rest.rows()));
-  const StateParts parts = parts_of(state);
-  append(bytes, number_of(parts));
+  const StateLayout layout = layout_of(state);
+  append(bytes, number_of(layout));
   append(bytes, std::uint64_t{(facts.is_solved ? 1u : 0u) | (facts.is_surface ? 2u : 0u) |
                               (facts.has_loose_patch ? 4u : 0u)});
   append(bytes, std::uint64_t{facts.forces.size()});
@@ -274,20 +274,20 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   if (!state.unsettled.empty()) {
     for (const Run& run : runs) append(bytes, state.unsettled.data() + run.first, run.count);
   }
-  if (parts.has_push) append_push(bytes, state.last);
-  if (parts.plastic_places > 0) append_plastic(bytes, state.plastic);
+  if (layout.has_push) append_push(bytes, state.last);
+  if (layout.plastic_places > 0) append_plastic(bytes, state.plastic);
   append_seal(bytes);
   return bytes;
 }
 
 std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, const Field& rest,
-                                      StateParts parts) {
+                                      StateLayout layout) {
   const auto held = unsealed(bytes, magic);
   if (!held) return {};
   ByteReader reader(*held);
   if (reader.hash() != key) return {};
   const auto node_count = static_cast<std::uint64_t>(rest.rows());
-  if (reader.number() != node_count || reader.number() != number_of(parts)) return {};
+  if (reader.number() != node_count || reader.number() != number_of(layout)) return {};
   StoredState stored;
   const std::uint64_t flags = reader.number();
   stored.facts.is_solved = (flags & 1) != 0;
@@ -308,12 +308,12 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   const Columns columns = reader.number();
   take_rows(reader, state.positions, *runs, columns);
   take_rows(reader, state.velocities, *runs, columns >> 3);
-  if (parts.has_marks) {
+  if (layout.has_marks) {
     state.unsettled.assign(static_cast<std::size_t>(node_count), 0);
     for (const Run& run : *runs) reader.take(state.unsettled.data() + run.first, run.count);
   }
-  if (parts.has_push && !take_push(reader, node_count, state.last)) return {};
-  if (parts.plastic_places > 0 && !take_plastic(reader, parts.plastic_places, state.plastic))
+  if (layout.has_push && !take_push(reader, node_count, state.last)) return {};
+  if (layout.plastic_places > 0 && !take_plastic(reader, layout.plastic_places, state.plastic))
     return {};
   if (!reader.is_sound() || reader.left() != 0) return {};
   if (!state.positions.allFinite() || !state.velocities.allFinite()) return {};
@@ -321,10 +321,10 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
 }
 
 std::optional<StoredState> read_stored(StateStore& store, const Hash& key, const Field& rest,
-                                       StateParts parts) {
-  const auto bytes = store.read(key, most_bytes(rest.rows(), parts.plastic_places));
+                                       StateLayout layout) {
+  const auto bytes = store.read(key, most_bytes(rest.rows(), layout.plastic_places));
   if (!bytes) return {};
-  auto stored = from_bytes(*bytes, key, rest, parts);
+  auto stored = from_bytes(*bytes, key, rest, layout);
   if (!stored) store.discard(key);
   return stored;
 }

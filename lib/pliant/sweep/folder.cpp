@@ -276,9 +276,9 @@ void count_takes(SweepStatus& status) {
 
 }  // namespace
 
-class SweepFolder::Parts {
+class SweepFolder::Contents {
  public:
-  Parts(std::string name, SweepRequest asked, Sweep made, std::vector<InputHash> hashes)
+  Contents(std::string name, SweepRequest asked, Sweep made, std::vector<InputHash> hashes)
       : folder(std::move(name)),
         request(std::move(asked)),
         sweep(std::move(made)),
@@ -321,7 +321,7 @@ class SweepFolder::Parts {
   mutable InputHashes inputs;
 };
 
-SweepFolder::SweepFolder(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
+SweepFolder::SweepFolder(std::unique_ptr<Contents> contents) : contents_(std::move(contents)) {}
 SweepFolder::SweepFolder(SweepFolder&&) noexcept = default;
 SweepFolder::~SweepFolder() = default;
 
@@ -358,12 +358,12 @@ Result<SweepFolder> SweepFolder::make(const std::string& folder, const SweepRequ
   if (made.error())
     return fail(ErrorCode::Unwritable, "cannot make the folder: " + made.error().message(), folder);
   const auto written =
-      write_sweep_file(asked->file, sweep->takes().parts(), file_of_sweep(folder), should_stop);
+      write_sweep_file(asked->file, sweep->takes().plan(), file_of_sweep(folder), should_stop);
   if (!written) return fail(written.error());
   made.keep();
   if (!*written) return open_the_same();  // another process was quicker
-  return SweepFolder(std::make_unique<Parts>(folder, std::move(asked->file.request),
-                                             *std::move(sweep), std::move(asked->file.inputs)));
+  return SweepFolder(std::make_unique<Contents>(folder, std::move(asked->file.request),
+                                                *std::move(sweep), std::move(asked->file.inputs)));
 }
 
 Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopRequest& should_stop,
@@ -396,13 +396,13 @@ Result<SweepFolder> SweepFolder::open(const std::string& folder, const StopReque
                 fmt::format("{}: this build lacks the solver {}", printable(folder),
                             name_of(file->request.solver)));
   Sweep sweep = Sweep::unchecked(std::move(scenes), *std::move(takes), settings_of(file->request));
-  return SweepFolder(std::make_unique<Parts>(folder, std::move(file->request), std::move(sweep),
-                                             std::move(file->inputs)));
+  return SweepFolder(std::make_unique<Contents>(folder, std::move(file->request), std::move(sweep),
+                                                std::move(file->inputs)));
 }
 
-const std::string& SweepFolder::folder() const { return parts_->folder; }
-const Sweep& SweepFolder::sweep() const { return parts_->sweep; }
-const SweepRequest& SweepFolder::request() const { return parts_->request; }
+const std::string& SweepFolder::folder() const { return contents_->folder; }
+const Sweep& SweepFolder::sweep() const { return contents_->sweep; }
+const SweepRequest& SweepFolder::request() const { return contents_->request; }
 
 Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
   Gathering gathering(sweep().takes().count());
@@ -413,7 +413,7 @@ Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
   if (!request().write.empty()) {
     std::set<std::string> names;
     std::error_code ignored;
-    for (fs::directory_iterator entry(parts_->folder_of_takes(), ignored), end;
+    for (fs::directory_iterator entry(contents_->folder_of_takes(), ignored), end;
          !ignored && entry != end; entry.increment(ignored)) {
       names.insert(entry->path().filename().string());
       if (is_stopped(should_stop, names.size())) return interrupted();
@@ -421,7 +421,7 @@ Result<SweepStatus> SweepFolder::status(const StopRequest& should_stop) const {
     for (std::size_t take = 0; take < status.takes.size(); ++take) {
       if (is_stopped(should_stop)) return interrupted();
       TakeRecord& record = status.takes[take];
-      if (record.status == TakeStatus::Done && !parts_->has_files(take, names)) record = {};
+      if (record.status == TakeStatus::Done && !contents_->has_files(take, names)) record = {};
     }
   }
   count_takes(status);
@@ -438,7 +438,7 @@ Result<void> SweepFolder::run(const FolderRun& options) const {
   if (options.begin) options.begin(takes.size());
   if (takes.empty()) return {};
   if (!request().write.empty()) {
-    if (auto made = make_own_folder(parts_->folder_of_takes()); !made) return made;
+    if (auto made = make_own_folder(contents_->folder_of_takes()); !made) return made;
   }
   auto log = LogFile::create(fs::path(folder()) / "log");
   if (!log) return fail(log.error());
@@ -456,12 +456,12 @@ Result<void> SweepFolder::run(const FolderRun& options) const {
         return {};
       }};
   if (!request().write.empty())
-    run.file_of = [this](std::size_t take) { return parts_->file_of(take); };
+    run.file_of = [this](std::size_t take) { return contents_->file_of(take); };
   return sweep().run(takes, run);
 }
 
 Result<void> SweepFolder::check_inputs(const Scene& scene, const StopRequest& should_stop) const {
-  return parts_->inputs.check(scene, should_stop);
+  return contents_->inputs.check(scene, should_stop);
 }
 
 Result<void> SweepFolder::make_inner_folder(const std::string& name) const {

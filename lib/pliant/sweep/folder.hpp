@@ -118,9 +118,9 @@ class SweepFolder {
   Result<void> make_inner_folder(const std::string& name) const;
 
  private:
-  class Parts;
-  explicit SweepFolder(std::unique_ptr<Parts> parts);
-  std::unique_ptr<Parts> parts_;
+  class Contents;
+  explicit SweepFolder(std::unique_ptr<Contents> contents);
+  std::unique_ptr<Contents> contents_;
 };
 
 /// Writes the table of a sweep, some rows at a time. Errors: those of `write`.

@@ -36,9 +36,9 @@ void add_distances(const Field& a, const Field& b, Distances& squares) {
 
 }  // namespace
 
-class Measurer::Parts {
+class Measurer::Totals {
  public:
-  explicit Parts(const Simulation& simulation)
+  explicit Totals(const Simulation& simulation)
       : simulation_(simulation), last_(simulation.rest_shapes().size()) {
     for (const RestShape& shape : simulation.rest_shapes())
       vertex_count_ += static_cast<double>(shape.mesh.vertex_count());
@@ -117,14 +117,14 @@ class Measurer::Parts {
   std::vector<double> moved_;                // the largest step to each frame
 };
 
-Measurer::Measurer(const Simulation& simulation) : parts_(std::make_unique<Parts>(simulation)) {}
+Measurer::Measurer(const Simulation& simulation) : totals_(std::make_unique<Totals>(simulation)) {}
 Measurer::Measurer(Measurer&&) noexcept = default;
 Measurer::~Measurer() = default;
 
-void Measurer::add(const Frame& frame) { parts_->add(frame); }
+void Measurer::add(const Frame& frame) { totals_->add(frame); }
 
 Result<Measures> Measurer::measures() const {
-  const Measures measures = parts_->measures();
+  const Measures measures = totals_->measures();
   const std::pair<const char*, double> all[] = {{"peak", measures.peak},
                                                 {"final", measures.final},
                                                 {"rms", measures.rms},

@@ -48,8 +48,8 @@ class Measurer {
   Result<Measures> measures() const;
 
  private:
-  class Parts;
-  std::unique_ptr<Parts> parts_;
+  class Totals;
+  std::unique_ptr<Totals> totals_;
 };
 
 }  // namespace pliant

@@ -49,7 +49,7 @@ Result<void> visit_texts(const Scene& base, const Takes& takes, std::size_t path
 
 Sweep::Sweep(std::vector<Scene> scenes, Takes takes, SweepSettings settings)
     : scenes_(std::move(scenes)), takes_(std::move(takes)), settings_(std::move(settings)) {
-  PLIANT_EXPECTS(scenes_.size() == takes_.parts().scene_count);
+  PLIANT_EXPECTS(scenes_.size() == takes_.plan().scene_count);
 }
 
 Result<Sweep> Sweep::make(std::vector<Scene> scenes, Takes takes, SweepSettings settings,

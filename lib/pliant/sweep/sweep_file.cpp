@@ -109,7 +109,7 @@ FileJson texts_of_scenes(const SweepFile& content) {
   return all;
 }
 
-void write_content(const SweepFile& content, const TakeParts& takes, JsonFile& out) {
+void write_content(const SweepFile& content, const TakePlan& takes, JsonFile& out) {
   FileJson json{{"sweep", format_version},
                 {"version", content.version},
                 {"engine", content.engine},
@@ -237,27 +237,27 @@ class SweepFileReader : private JsonReader {
   }
 
   Result<void> read_takes(SweepFile& content) {
-    TakeParts& parts = content.takes;
-    parts.scene_count = content.request.scenes.size();
+    TakePlan& plan = content.takes;
+    plan.scene_count = content.request.scenes.size();
     for (const std::string& typed : content.request.variation.set) {
       auto change = parse_change(typed);
       if (!change) return fail(change.error());
-      parts.set.push_back(*std::move(change));
+      plan.set.push_back(*std::move(change));
     }
     each_required(root_, "paths", [&](Json& json) {
       const std::string kind = required_text(json, "kind");
-      parts.paths.push_back({required_text(json, "path"), kind == "*"   ? SceneChange::Kind::Times
-                                                          : kind == "+" ? SceneChange::Kind::Plus
-                                                                        : SceneChange::Kind::Set});
+      plan.paths.push_back({required_text(json, "path"), kind == "*"   ? SceneChange::Kind::Times
+                                                         : kind == "+" ? SceneChange::Kind::Plus
+                                                                       : SceneChange::Kind::Set});
     });
     each_required(root_, "axes", [&](Json& json) {
-      TakeAxis& axis = parts.axes.emplace_back();
+      TakeAxis& axis = plan.axes.emplace_back();
       if (!member(json, "paths")) refuse("paths", "is missing");
       for (const std::uint64_t path : wholes(json, "paths"))
         axis.paths.push_back(static_cast<std::size_t>(path));
       axis.count = static_cast<std::size_t>(required_whole(json, "count"));
       if (!texts(json, "texts").empty()) refuse("texts", "is not a list of texts");
-      if (parts.axes.size() <= texts_.size()) axis.texts = std::move(texts_[parts.axes.size() - 1]);
+      if (plan.axes.size() <= texts_.size()) axis.texts = std::move(texts_[plan.axes.size() - 1]);
     });
     return {};
   }
@@ -284,7 +284,7 @@ std::string one_text(std::string_view option, const std::string& value) {
 
 }  // namespace
 
-Result<bool> write_sweep_file(const SweepFile& content, const TakeParts& takes,
+Result<bool> write_sweep_file(const SweepFile& content, const TakePlan& takes,
                               const std::filesystem::path& file, const StopRequest& should_stop) {
   auto opened = AtomicFile::create(file);
   if (!opened) return fail(opened.error());

@@ -23,13 +23,13 @@ struct SweepFile {
   std::string table_hash = {};  ///< of the table in the request, which itself is not stored
   std::vector<SceneTexts> texts = {};
   std::vector<InputHash> inputs = {};
-  TakeParts takes = {};  ///< of a file that was read
+  TakePlan takes = {};  ///< of a file that was read
 };
 
 /// Writes it with these takes, whole or not at all, and never in place of another. Whether it is
 /// written now; if not, there is one. Errors: InvalidInput: a name is no UTF-8; it is larger than
 /// `largest_sweep_file`; Unwritable; Interrupted.
-Result<bool> write_sweep_file(const SweepFile& content, const TakeParts& takes,
+Result<bool> write_sweep_file(const SweepFile& content, const TakePlan& takes,
                               const std::filesystem::path& file,
                               const StopRequest& should_stop = {});
 

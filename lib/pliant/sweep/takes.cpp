@@ -49,15 +49,15 @@ std::string VariedPath::title() const {
 
 Result<Takes> Takes::make(const SweepVariation& variation, const StopRequest& should_stop) {
   Takes takes;
-  takes.parts_.scene_count = variation.scene_count;
+  takes.plan_.scene_count = variation.scene_count;
   ChangedValues values;
   for (const std::string& typed : variation.set) {
     auto change = parse_change(typed);
     if (!change) return refuse("--set " + change.error().message);
     if (const auto other = values.add(*change))
       return refuse(fmt::format("--set {}: {} changes the same value", typed,
-                                takes.parts_.set[*other].typed()));
-    takes.parts_.set.push_back(*std::move(change));
+                                takes.plan_.set[*other].typed()));
+    takes.plan_.set.push_back(*std::move(change));
   }
   if (variation.table) {
     if (!variation.vary.empty() || variation.samples)
@@ -71,16 +71,16 @@ Result<Takes> Takes::make(const SweepVariation& variation, const StopRequest& sh
   return takes;
 }
 
-Result<Takes> Takes::of(TakeParts parts) {
+Result<Takes> Takes::of(TakePlan plan) {
   const auto is_sound = [&](const TakeAxis& axis) {
     return axis.count >= 1 && !axis.paths.empty() &&
            axis.texts.size() == axis.count * axis.paths.size() &&
            std::all_of(axis.paths.begin(), axis.paths.end(),
-                       [&](std::size_t path) { return path < parts.paths.size(); });
+                       [&](std::size_t path) { return path < plan.paths.size(); });
   };
-  std::vector<int> uses(parts.paths.size());
-  bool are_sound = parts.scene_count >= 1;
-  for (const TakeAxis& axis : parts.axes) {
+  std::vector<int> uses(plan.paths.size());
+  bool are_sound = plan.scene_count >= 1;
+  for (const TakeAxis& axis : plan.axes) {
     are_sound = are_sound && is_sound(axis);
     if (!are_sound) break;
     for (const std::size_t path : axis.paths) ++uses[path];
@@ -88,7 +88,7 @@ Result<Takes> Takes::of(TakeParts parts) {
   if (!are_sound || !std::all_of(uses.begin(), uses.end(), [](int count) { return count == 1; }))
     return refuse("the axes of the takes do not belong together");
   Takes takes;
-  takes.parts_ = std::move(parts);
+  takes.plan_ = std::move(plan);
   if (auto counted = takes.count_takes(); !counted) return fail(counted.error());
   return takes;
 }
@@ -97,15 +97,14 @@ Result<Takes> Takes::of(TakeParts parts) {
 Result<void> Takes::add_path(const std::string& option, const SceneChange& change,
                              ChangedValues& values) {
   if (const auto other = values.add(change)) {
-    if (*other < parts_.set.size())
+    if (*other < plan_.set.size())
       return refuse(
-          fmt::format("{}: --set {} sets the same value", option, parts_.set[*other].typed()));
-    return refuse(fmt::format("{}: {} varies the same value", option,
-                              table_title_.empty()
-                                  ? parts_.paths[*other - parts_.set.size()].title()
-                                  : "another column"));
+          fmt::format("{}: --set {} sets the same value", option, plan_.set[*other].typed()));
+    return refuse(fmt::format(
+        "{}: {} varies the same value", option,
+        table_title_.empty() ? plan_.paths[*other - plan_.set.size()].title() : "another column"));
   }
-  parts_.paths.push_back({change.path, change.kind, option});
+  plan_.paths.push_back({change.path, change.kind, option});
   return {};
 }
 
@@ -125,8 +124,8 @@ Result<void> Takes::read_axes(const SweepVariation& variation, ChangedValues& va
     if (!run) return refuse(fmt::format("{}: {}", option, run.error().message));
     if (auto added = add_path(option, *change, values); !added) return added;
     if (!run->is_interval()) {
-      TakeAxis& axis = parts_.axes.emplace_back();
-      axis.paths = {parts_.paths.size() - 1};
+      TakeAxis& axis = plan_.axes.emplace_back();
+      axis.paths = {plan_.paths.size() - 1};
       axis.count = run->texts.size();
       for (const std::string& text : run->texts) axis.texts.push_back(text);
       // Ahead of further ones, each of which may have a million values.
@@ -141,7 +140,7 @@ Result<void> Takes::read_axes(const SweepVariation& variation, ChangedValues& va
     if (intervals.size() == most_intervals)
       return refuse(fmt::format("{}: at most {} intervals can be sampled", option, most_intervals));
     intervals.push_back({run->from, run->to});
-    sampled.paths.push_back(parts_.paths.size() - 1);
+    sampled.paths.push_back(plan_.paths.size() - 1);
   }
   if (!variation.samples) return {};
   if (intervals.empty())
@@ -164,7 +163,7 @@ Result<void> Takes::read_axes(const SweepVariation& variation, ChangedValues& va
       sampled.texts.push_back(fmt::format("{}", value));
     }
   }
-  parts_.axes.insert(parts_.axes.begin(), std::move(sampled));
+  plan_.axes.insert(plan_.axes.begin(), std::move(sampled));
   return {};
 }
 
@@ -195,7 +194,7 @@ Result<void> Takes::read_table(const SweepVariation& variation, ChangedValues& v
                             return row.fields[column].empty();
                           });
     if (is_empty) continue;  // some programs end each row by a separator
-    if (field == "scene" && (parts_.scene_count > 1 || !is_the_same(*rows, column))) {
+    if (field == "scene" && (plan_.scene_count > 1 || !is_the_same(*rows, column))) {
       return at_line(
           header.line,
           "its rows are of several scenes; make a table of the rows of each scene, and run "
@@ -212,7 +211,7 @@ Result<void> Takes::read_table(const SweepVariation& variation, ChangedValues& v
       change.path.pop_back();
     }
     if (change.path.empty()) return at_line(header.line, "a path is missing in the header");
-    axis.paths.push_back(parts_.paths.size());
+    axis.paths.push_back(plan_.paths.size());
     const std::string option =
         fmt::format("{}, line {}: column {}", table_title_, header.line, column + 1);
     if (auto added = add_path(option, change, values); !added) return added;
@@ -228,15 +227,15 @@ Result<void> Takes::read_table(const SweepVariation& variation, ChangedValues& v
     for (const std::size_t column : columns) axis.texts.push_back(row.fields[column]);
     row.fields = {};
   }
-  parts_.axes.push_back(std::move(axis));
+  plan_.axes.push_back(std::move(axis));
   return {};
 }
 
 Result<void> Takes::count_takes() {
-  if (parts_.axes.empty() && parts_.scene_count < 2)
+  if (plan_.axes.empty() && plan_.scene_count < 2)
     return refuse("nothing varies; give --vary, --takes or several scenes");
-  double all = static_cast<double>(parts_.scene_count);
-  for (const TakeAxis& axis : parts_.axes) all *= static_cast<double>(axis.count);
+  double all = static_cast<double>(plan_.scene_count);
+  for (const TakeAxis& axis : plan_.axes) all *= static_cast<double>(axis.count);
   if (all > static_cast<double>(most_takes))
     return refuse(
         fmt::format("{:.0f} takes are too many; at most {} are allowed", all, most_takes));
@@ -245,8 +244,8 @@ Result<void> Takes::count_takes() {
 }
 
 std::string Takes::place_of(std::size_t path, std::string_view text) const {
-  if (row_lines_.empty()) return parts_.paths[path].option;
-  const TakeAxis& axis = parts_.axes.back();
+  if (row_lines_.empty()) return plan_.paths[path].option;
+  const TakeAxis& axis = plan_.axes.back();
   const auto column = static_cast<std::size_t>(
       std::find(axis.paths.begin(), axis.paths.end(), path) - axis.paths.begin());
   std::size_t row = 0;
@@ -254,12 +253,12 @@ std::string Takes::place_of(std::size_t path, std::string_view text) const {
   return fmt::format("{}, line {}", table_title_, row_lines_[row]);
 }
 
-std::size_t Takes::scene_of(std::size_t take) const { return take / (count_ / parts_.scene_count); }
+std::size_t Takes::scene_of(std::size_t take) const { return take / (count_ / plan_.scene_count); }
 
 std::vector<std::string_view> Takes::texts(std::size_t take) const {
-  std::vector<std::string_view> texts(parts_.paths.size());
-  for (std::size_t k = parts_.axes.size(); k-- > 0;) {
-    const TakeAxis& axis = parts_.axes[k];
+  std::vector<std::string_view> texts(plan_.paths.size());
+  for (std::size_t k = plan_.axes.size(); k-- > 0;) {
+    const TakeAxis& axis = plan_.axes[k];
     const std::size_t first = take % axis.count * axis.paths.size();
     for (std::size_t n = 0; n < axis.paths.size(); ++n)
       texts[axis.paths[n]] = axis.texts[first + n];
@@ -269,10 +268,10 @@ std::vector<std::string_view> Takes::texts(std::size_t take) const {
 }
 
 std::vector<SceneChange> Takes::changes(std::size_t take) const {
-  std::vector<SceneChange> changes = parts_.set;
+  std::vector<SceneChange> changes = plan_.set;
   const std::vector<std::string_view> own = texts(take);
-  for (std::size_t k = 0; k < parts_.paths.size(); ++k)
-    changes.push_back({parts_.paths[k].kind, parts_.paths[k].path, std::string(own[k])});
+  for (std::size_t k = 0; k < plan_.paths.size(); ++k)
+    changes.push_back({plan_.paths[k].kind, plan_.paths[k].path, std::string(own[k])});
   return changes;
 }
 
@@ -281,7 +280,7 @@ std::vector<std::string_view> Takes::texts_of(std::size_t path,
   std::vector<std::string_view> texts;
   std::unordered_set<std::string_view> known;
   StopPoll stop(should_stop);
-  for (const TakeAxis& axis : parts_.axes) {
+  for (const TakeAxis& axis : plan_.axes) {
     const auto found = std::find(axis.paths.begin(), axis.paths.end(), path);
     if (found == axis.paths.end()) continue;
     known.reserve(axis.count);  // at once: to grow it again and again would take long in one piece

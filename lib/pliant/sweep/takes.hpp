@@ -45,8 +45,8 @@ struct TakeAxis {
   std::size_t count = 0;                ///< of rows, >= 1
 };
 
-/// What a `Takes` consists of, to store it.
-struct TakeParts {
+/// What the takes of a sweep are made from, as it is stored.
+struct TakePlan {
   std::size_t scene_count = 1;
   std::vector<SceneChange> set = {};   ///< made in every take
   std::vector<VariedPath> paths = {};  ///< in the order of the table
@@ -64,16 +64,16 @@ class Takes {
   /// values. Interrupted.
   static Result<Takes> make(const SweepVariation& variation, const StopRequest& should_stop = {});
 
-  /// The same from its parts. Errors: InvalidInput: they do not belong together.
-  static Result<Takes> of(TakeParts parts);
+  /// The same from its plan. Errors: InvalidInput: they do not belong together.
+  static Result<Takes> of(TakePlan plan);
 
-  const TakeParts& parts() const { return parts_; }
+  const TakePlan& plan() const { return plan_; }
 
   std::size_t count() const { return count_; }
   std::size_t scene_of(std::size_t take) const;
 
-  const std::vector<SceneChange>& set() const { return parts_.set; }
-  const std::vector<VariedPath>& paths() const { return parts_.paths; }
+  const std::vector<SceneChange>& set() const { return plan_.set; }
+  const std::vector<VariedPath>& paths() const { return plan_.paths; }
 
   /// `--takes FILE` of a table, for messages; empty: there is none.
   const std::string& table_title() const { return table_title_; }
@@ -104,7 +104,7 @@ class Takes {
                         ChangedValues& values);
   Result<void> count_takes();
 
-  TakeParts parts_;
+  TakePlan plan_;
   std::size_t count_ = 0;
   std::vector<int> row_lines_;  // of a table
   std::string table_title_;     // `--takes FILE`

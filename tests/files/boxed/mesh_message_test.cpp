@@ -44,15 +44,15 @@ std::optional<double> sum_of_all(const std::string& bytes) {
     add(names.mesh);
   }
   if (message->chosen) CHECK(*message->chosen < message->objects.size());
-  for (const MeshPart& part : message->parts) {
-    add(part.material);
-    add(part.positions);
-    add(part.normals);
-    add(part.uvs);
-    add(part.corners);
+  for (const Submesh& submesh : message->submeshes) {
+    add(submesh.material);
+    add(submesh.positions);
+    add(submesh.normals);
+    add(submesh.uvs);
+    add(submesh.corners);
     std::size_t corners = 0;
-    for (std::size_t face = 0; face < part.sizes.size(); ++face) corners += part.sizes[face];
-    CHECK(corners == part.corners.size());
+    for (std::size_t face = 0; face < submesh.sizes.size(); ++face) corners += submesh.sizes[face];
+    CHECK(corners == submesh.corners.size());
   }
   return sum;
 }
@@ -70,12 +70,12 @@ TEST_CASE("the reader's answer has what the file has", "[mesh][mesh_message]") {
   CHECK(message->objects[0].faces == 4);
   CHECK(message->objects[0].left_out == 0);
   CHECK(message->chosen == 0u);
-  REQUIRE(message->parts.size() == 1);
-  CHECK(message->parts[0].sizes.size() == 4);
-  CHECK(message->parts[0].corners.size() == 16);
-  CHECK(message->parts[0].positions.size() == 3 * 16);
-  CHECK(message->parts[0].uvs.size() == 2 * 16);
-  CHECK(message->parts[0].uv_sets == 1);
+  REQUIRE(message->submeshes.size() == 1);
+  CHECK(message->submeshes[0].sizes.size() == 4);
+  CHECK(message->submeshes[0].corners.size() == 16);
+  CHECK(message->submeshes[0].positions.size() == 3 * 16);
+  CHECK(message->submeshes[0].uvs.size() == 2 * 16);
+  CHECK(message->submeshes[0].uv_sets == 1);
 }
 
 TEST_CASE("an answer that is cut short or goes on is none", "[mesh][mesh_message]") {

@@ -18,19 +18,20 @@ TEST_CASE("a tree of points holds each point once, in boxes that fit", "[mesh][p
     std::vector<int> all(count);
     std::iota(all.begin(), all.end(), 0);
     CHECK(rows == all);
-    REQUIRE(tree.parts().empty() == (count == 0));
-    for (const PointTree::Part& part : tree.parts()) {
-      const auto held = tree.points().middleRows(part.first, part.count);
-      CHECK(held.colwise().minCoeff().transpose() == part.low);
-      CHECK(held.colwise().maxCoeff().transpose() == part.high);
-      if (part.is_leaf()) {
-        CHECK(part.count <= PointTree::leaf_size);
+    REQUIRE(tree.clusters().empty() == (count == 0));
+    for (const PointTree::Cluster& cluster : tree.clusters()) {
+      const auto held = tree.points().middleRows(cluster.first, cluster.count);
+      CHECK(held.colwise().minCoeff().transpose() == cluster.low);
+      CHECK(held.colwise().maxCoeff().transpose() == cluster.high);
+      if (cluster.is_leaf()) {
+        CHECK(cluster.count <= PointTree::leaf_size);
         continue;
       }
-      const PointTree::Part &a = tree.parts()[part.child], &b = tree.parts()[part.child + 1];
-      CHECK(a.first == part.first);
+      const PointTree::Cluster &a = tree.clusters()[cluster.child],
+                               &b = tree.clusters()[cluster.child + 1];
+      CHECK(a.first == cluster.first);
       CHECK(b.first == a.first + a.count);
-      CHECK(a.count + b.count == part.count);
+      CHECK(a.count + b.count == cluster.count);
     }
   }
 }

@@ -42,7 +42,7 @@ CurveKeys<D> adjusted_keys(CurveKeys<D> keys, const Adjustments<D>& adjustments)
 }  // namespace
 
 template <int D>
-struct Curve<D>::Parts {
+struct Curve<D>::Shared {
   CurveKeys<D> keys;
   timeline::Compiled<D> compiled;
   std::optional<Adjustments<D>> adjustments = {};
@@ -52,11 +52,11 @@ template <int D>
 Checked<Curve<D>> Curve<D>::make(CurveKeys<D> keys, const StopRequest& should_stop) {
   auto compiled = timeline::compile(keys, should_stop);
   if (!compiled) return tl::unexpected(compiled.error());
-  return Curve(Parts{std::move(keys), *std::move(compiled)});
+  return Curve(Shared{std::move(keys), *std::move(compiled)});
 }
 
 template <int D>
-Curve<D>::Curve(Parts parts) : parts_(std::make_shared<const Parts>(std::move(parts))) {}
+Curve<D>::Curve(Shared shared) : shared_(std::make_shared<const Shared>(std::move(shared))) {}
 
 template <int D>
 Curve<D>::Curve(const Curve&) = default;
@@ -76,19 +76,19 @@ Curve<D>::~Curve() = default;
 template <int D>
 Curve<D> Curve<D>::adjusted(const Adjustments<D>& adjustments) const {
   PLIANT_EXPECTS(!this->adjustments() || !overlap<D>(*this->adjustments(), adjustments));
-  Parts parts = *parts_;
-  parts.keys = adjusted_keys<D>(std::move(parts.keys), adjustments);
-  for (KeyHandle<D>& handle : parts.compiled.handles) {
+  Shared shared = *shared_;
+  shared.keys = adjusted_keys<D>(std::move(shared.keys), adjustments);
+  for (KeyHandle<D>& handle : shared.compiled.handles) {
     handle.key_value = adjusted_value<D>(adjustments, handle.key_value);
     handle.value = adjusted_value<D>(adjustments, handle.value);
   }
-  parts.adjustments = parts.adjustments ? both<D>(*parts.adjustments, adjustments) : adjustments;
-  return Curve(std::move(parts));
+  shared.adjustments = shared.adjustments ? both<D>(*shared.adjustments, adjustments) : adjustments;
+  return Curve(std::move(shared));
 }
 
 template <int D>
 const Adjustments<D>* Curve<D>::adjustments() const {
-  return parts_->adjustments ? &*parts_->adjustments : nullptr;
+  return shared_->adjustments ? &*shared_->adjustments : nullptr;
 }
 
 template <int D>
@@ -138,28 +138,28 @@ ValueRange<D> Curve<D>::range(double from, double to) const {
 
 template <int D>
 const timeline::Extrapolated<D>& Curve<D>::compiled() const {
-  return parts_->compiled.curve;
+  return shared_->compiled.curve;
 }
 
 template <int D>
 bool Curve<D>::is_equal(const Curve& other) const {
-  return parts_ == other.parts_ ||
-         (keys() == other.keys() && parts_->adjustments == other.parts_->adjustments);
+  return shared_ == other.shared_ ||
+         (keys() == other.keys() && shared_->adjustments == other.shared_->adjustments);
 }
 
 template <int D>
 const CurveKeys<D>& Curve<D>::keys() const {
-  return parts_->keys;
+  return shared_->keys;
 }
 
 template <int D>
 const std::vector<CurveNote>& Curve<D>::notes() const {
-  return parts_->compiled.notes;
+  return shared_->compiled.notes;
 }
 
 template <int D>
 const std::vector<KeyHandle<D>>& Curve<D>::handles() const {
-  return parts_->compiled.handles;
+  return shared_->compiled.handles;
 }
 
 template class Curve<1>;

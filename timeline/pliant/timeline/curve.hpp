@@ -46,7 +46,7 @@ class Curve {
   /// If it is stopped, an error that is an interruption.
   [[nodiscard]] static Checked<Curve> make(CurveKeys<D> keys, const StopRequest& should_stop = {});
 
-  Curve(const Curve&);  ///< shares its parts: of constant cost
+  Curve(const Curve&);  ///< shares its keys: of constant cost
   Curve(Curve&&) noexcept;
   Curve& operator=(const Curve&);
   Curve& operator=(Curve&&) noexcept;
@@ -84,14 +84,14 @@ class Curve {
  private:
   friend class Sampler<D>;
 
-  struct Parts;
+  struct Shared;
 
   const timeline::Extrapolated<D>& compiled() const;
 
-  explicit Curve(Parts parts);
+  explicit Curve(Shared shared);
   bool is_equal(const Curve& other) const;
 
-  std::shared_ptr<const Parts> parts_;  // of all copies; null once moved from
+  std::shared_ptr<const Shared> shared_;  // of all copies; null once moved from
 };
 
 extern template class Curve<1>;

@@ -56,30 +56,30 @@ class MessageReader {
 
 // Whether the sum of the sizes equals the number of corners, so that a loop over them stays in
 // range.
-bool sizes_agree(const MeshPart& part) {
+bool sizes_agree(const Submesh& submesh) {
   std::uint64_t corners = 0;
-  for (std::size_t face = 0; face < part.sizes.size(); ++face) {
-    if (part.sizes[face] < 3) return false;
-    corners += part.sizes[face];
+  for (std::size_t face = 0; face < submesh.sizes.size(); ++face) {
+    if (submesh.sizes[face] < 3) return false;
+    corners += submesh.sizes[face];
   }
-  return corners == part.corners.size();
+  return corners == submesh.corners.size();
 }
 
-std::optional<MeshPart> parse_part(MessageReader& reader) {
-  MeshPart part;
-  part.material = reader.text();
-  part.uv_sets = reader.number<std::uint32_t>();
+std::optional<Submesh> parse_submesh(MessageReader& reader) {
+  Submesh submesh;
+  submesh.material = reader.text();
+  submesh.uv_sets = reader.number<std::uint32_t>();
   const bool is_lit = reader.fact(), has_uvs = reader.fact();
   const auto vertices = reader.number<std::uint32_t>();
   const auto faces = reader.number<std::uint32_t>();
   const auto corners = reader.number<std::uint32_t>();
-  part.positions = reader.numbers<float>(vertices, 3);
-  if (is_lit) part.normals = reader.numbers<float>(vertices, 3);
-  if (has_uvs) part.uvs = reader.numbers<float>(vertices, 2);
-  part.sizes = reader.numbers<std::uint32_t>(faces);
-  part.corners = reader.numbers<std::uint32_t>(corners);
-  if (!reader.is_sound() || !sizes_agree(part)) return {};
-  return part;
+  submesh.positions = reader.numbers<float>(vertices, 3);
+  if (is_lit) submesh.normals = reader.numbers<float>(vertices, 3);
+  if (has_uvs) submesh.uvs = reader.numbers<float>(vertices, 2);
+  submesh.sizes = reader.numbers<std::uint32_t>(faces);
+  submesh.corners = reader.numbers<std::uint32_t>(corners);
+  if (!reader.is_sound() || !sizes_agree(submesh)) return {};
+  return submesh;
 }
 
 bool parse_scene(MessageReader& reader, MeshMessage& message) {
@@ -98,13 +98,13 @@ bool parse_scene(MessageReader& reader, MeshMessage& message) {
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column)
       message.to_file(row, column) = reader.number<double>();
-  const std::uint32_t part_count = reader.count(7 * sizeof(std::uint32_t));
-  for (std::uint32_t k = 0; k < part_count; ++k) {
-    const auto part = parse_part(reader);
-    if (!part) return false;
-    message.parts.push_back(*part);
+  const std::uint32_t submesh_count = reader.count(7 * sizeof(std::uint32_t));
+  for (std::uint32_t k = 0; k < submesh_count; ++k) {
+    const auto submesh = parse_submesh(reader);
+    if (!submesh) return false;
+    message.submeshes.push_back(*submesh);
   }
-  return reader.is_sound() && !message.parts.empty();
+  return reader.is_sound() && !message.submeshes.empty();
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ namespace pliant {
 //   Scene:    u32 number of objects; of each: text node, text mesh,
 //               u64 vertices, u64 faces, u64 faces that are left out
 //             u32 index of the chosen object, or no_object and then nothing more
-//             16 f64, the transform by rows; u32 number of parts; of each:
+//             16 f64, the transform by rows; u32 number of submeshes; of each:
 //               text material, u32 sets of (u,v) as bits, u32 is_lit, u32 has_uvs
 //               u32 vertices, u32 faces, u32 corners
 //               f32 3 per vertex; if is_lit f32 3 per vertex; if has_uvs f32 2 per vertex
@@ -59,20 +59,20 @@ class PackedNumbers {
 };
 
 /// Faces of one material. Sizes are consistent with each other; indices are those of the file.
-struct MeshPart {
+struct Submesh {
   std::string_view material;
   std::uint32_t uv_sets = 0;             ///< bit k: there is a set k
   PackedNumbers<float> positions;        ///< x, y and z of each vertex
   PackedNumbers<float> normals;          ///< likewise, or empty
   PackedNumbers<float> uvs;              ///< of the requested set: u and v, or empty
   PackedNumbers<std::uint32_t> sizes;    ///< #faces: corners of each
-  PackedNumbers<std::uint32_t> corners;  ///< #corners: a vertex of this part
+  PackedNumbers<std::uint32_t> corners;  ///< #corners: a vertex of this submesh
 };
 
 struct ObjectEntry {
   std::string_view node;
   std::string_view mesh;       ///< of the first mesh with faces
-  std::uint64_t vertices = 0;  ///< of its parts
+  std::uint64_t vertices = 0;  ///< of its submeshes
   std::uint64_t faces = 0;     ///< likewise
   std::uint64_t left_out = 0;  ///< faces of its meshes with fewer than three corners
 };
@@ -81,9 +81,9 @@ struct MeshMessage {
   MessageKind kind = MessageKind::Scene;
   std::string_view reason;            ///< of Refused
   std::vector<ObjectEntry> objects;   ///< in the order of the file
-  std::optional<std::size_t> chosen;  ///< the object of these parts
+  std::optional<std::size_t> chosen;  ///< the object of these submeshes
   Eigen::Matrix4d to_file = Eigen::Matrix4d::Identity();
-  std::vector<MeshPart> parts;
+  std::vector<Submesh> submeshes;
 };
 
 /// Parses bytes that a broken or hostile process may have written; they must outlive the result.

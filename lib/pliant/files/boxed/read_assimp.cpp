@@ -66,9 +66,9 @@ struct Names {
 };
 
 Result<void> check_sets(const MeshMessage& message, int uv_set) {
-  for (const MeshPart& part : message.parts) {
-    const int set_count = std::popcount(part.uv_sets);
-    if (!part.uvs.empty()) continue;
+  for (const Submesh& submesh : message.submeshes) {
+    const int set_count = std::popcount(submesh.uv_sets);
+    if (!submesh.uvs.empty()) continue;
     if (auto checked = check_uv_set(uv_set, set_count); !checked) return checked;
     if (set_count > 0)  // a file may omit its first set
       return invalid(fmt::format("the object has UV sets, but not set {}", uv_set));
@@ -79,9 +79,9 @@ Result<void> check_sets(const MeshMessage& message, int uv_set) {
 // Whether an int can count vertices and corners.
 Result<void> check_size(const MeshMessage& message) {
   std::uint64_t vertices = 0, corners = 0;
-  for (const MeshPart& part : message.parts) {
-    vertices += part.positions.size() / 3;
-    corners += part.corners.size();
+  for (const Submesh& submesh : message.submeshes) {
+    vertices += submesh.positions.size() / 3;
+    corners += submesh.corners.size();
   }
   constexpr std::uint64_t most = std::numeric_limits<int>::max();
   if (vertices <= most && corners <= most) return {};
@@ -90,13 +90,13 @@ Result<void> check_size(const MeshMessage& message) {
       vertices, corners, most));
 }
 
-// Appends the faces of one part, whose vertices and (u,v) are numbered from the given ones on.
-Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, Mesh& mesh) {
-  const std::size_t vertex_count = part.positions.size() / 3;
-  for (std::size_t face = 0; face < part.sizes.size(); ++face)
-    mesh.face_sizes.push_back(static_cast<int>(part.sizes[face]));
-  for (std::size_t corner = 0; corner < part.corners.size(); ++corner) {
-    const std::uint32_t index = part.corners[corner];
+// Appends the faces of one submesh, whose vertices and (u,v) are numbered from the given ones on.
+Result<void> append_faces(const Submesh& submesh, int first_vertex, int first_uv, Mesh& mesh) {
+  const std::size_t vertex_count = submesh.positions.size() / 3;
+  for (std::size_t face = 0; face < submesh.sizes.size(); ++face)
+    mesh.face_sizes.push_back(static_cast<int>(submesh.sizes[face]));
+  for (std::size_t corner = 0; corner < submesh.corners.size(); ++corner) {
+    const std::uint32_t index = submesh.corners[corner];
     if (index >= vertex_count) {
       return invalid(fmt::format("corner {} of its faces refers to vertex {}, but there are {}",
                                  corner, index, vertex_count));
@@ -107,17 +107,17 @@ Result<void> append_faces(const MeshPart& part, int first_vertex, int first_uv, 
   return {};
 }
 
-// Appends the shading of a part's faces, for the given corners.
-void append_shading(const MeshPart& part, std::span<const int> corner_vertices, int first_vertex,
+// Appends the shading of a submesh's faces, for the given corners.
+void append_shading(const Submesh& submesh, std::span<const int> corner_vertices, int first_vertex,
                     Shading& shading) {
   const auto first_normal = static_cast<int>(shading.normals.size());
-  const bool has_normals = !part.normals.empty();
+  const bool has_normals = !submesh.normals.empty();
   for (const int vertex : corner_vertices)
     shading.corner_normals.push_back(has_normals ? first_normal + vertex - first_vertex : -1);
-  shading.smoothing.resize(shading.smoothing.size() + part.sizes.size(), Shading::unsaid);
-  for (std::size_t k = 0; k + 3 <= part.normals.size(); k += 3) {
-    const std::array<double, 3> normal = {part.normals[k], part.normals[k + 1],
-                                          part.normals[k + 2]};
+  shading.smoothing.resize(shading.smoothing.size() + submesh.sizes.size(), Shading::unsaid);
+  for (std::size_t k = 0; k + 3 <= submesh.normals.size(); k += 3) {
+    const std::array<double, 3> normal = {submesh.normals[k], submesh.normals[k + 1],
+                                          submesh.normals[k + 2]};
     const bool is_finite =
         std::all_of(normal.begin(), normal.end(), [](double each) { return std::isfinite(each); });
     shading.normals.push_back(is_finite ? normal : std::array<double, 3>{});
@@ -131,23 +131,24 @@ Result<Mesh> merged(const MeshMessage& message, int uv_set, const StopRequest& s
   Shading shading;
   NamedFaces materials;
   std::size_t numbers = 0;
-  for (const MeshPart& part : message.parts) numbers += part.positions.size();
+  for (const Submesh& submesh : message.submeshes) numbers += submesh.positions.size();
   mesh.positions.resize(static_cast<Eigen::Index>(numbers / 3), 3);
   Eigen::Index row = 0;
-  for (const MeshPart& part : message.parts) {
+  for (const Submesh& submesh : message.submeshes) {
     if (is_stopped(should_stop)) return interrupted();
-    const int first_uv = part.uvs.empty() ? -1 : static_cast<int>(mesh.uvs.size());
+    const int first_uv = submesh.uvs.empty() ? -1 : static_cast<int>(mesh.uvs.size());
     const auto first_vertex = static_cast<int>(row);
     const std::size_t first_corner = mesh.corner_vertices.size();
-    if (auto added = append_faces(part, first_vertex, first_uv, mesh); !added)
+    if (auto added = append_faces(submesh, first_vertex, first_uv, mesh); !added)
       return fail(added.error());
-    append_shading(part, std::span(mesh.corner_vertices).subspan(first_corner), first_vertex,
+    append_shading(submesh, std::span(mesh.corner_vertices).subspan(first_corner), first_vertex,
                    shading);
-    materials.add_faces(materials.number_of(part.material), part.sizes.size());
-    for (std::size_t k = 0; k + 3 <= part.positions.size(); k += 3, ++row)
-      mesh.positions.row(row) << part.positions[k], part.positions[k + 1], part.positions[k + 2];
-    for (std::size_t k = 0; k + 2 <= part.uvs.size(); k += 2)
-      mesh.uvs.push_back({part.uvs[k], part.uvs[k + 1]});
+    materials.add_faces(materials.number_of(submesh.material), submesh.sizes.size());
+    for (std::size_t k = 0; k + 3 <= submesh.positions.size(); k += 3, ++row)
+      mesh.positions.row(row) << submesh.positions[k], submesh.positions[k + 1],
+          submesh.positions[k + 2];
+    for (std::size_t k = 0; k + 2 <= submesh.uvs.size(); k += 2)
+      mesh.uvs.push_back({submesh.uvs[k], submesh.uvs[k + 1]});
   }
   mesh.materials = part_of(materials.names(), 0, mesh.face_sizes.size());
   const ObjectEntry& object = message.objects[*message.chosen];

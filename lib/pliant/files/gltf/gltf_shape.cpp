@@ -65,19 +65,20 @@ Result<GltfShape> make_gltf_shape(const Mesh& mesh, const StopRequest& should_st
   const std::vector<std::array<int, 3>> triangles = triangulate(mesh, poll);
   if (poll.after(0)) return interrupted();
 
-  std::vector<std::size_t> part_of(mesh.materials.names.size() + 1, 0);  // counted from 1
+  std::vector<std::size_t> primitive_of(mesh.materials.names.size() + 1, 0);  // counted from 1
   std::size_t triangle = 0;
   for (std::size_t face = 0; face < mesh.face_sizes.size(); ++face) {
     const int material = mesh.materials.of_faces.empty() ? none : mesh.materials.of_faces[face];
-    std::size_t& part = part_of[static_cast<std::size_t>(std::int64_t{material} + 1)];
-    if (part == 0) {
-      shape.parts.push_back({material, {}});
-      part = shape.parts.size();
+    std::size_t& primitive = primitive_of[static_cast<std::size_t>(std::int64_t{material} + 1)];
+    if (primitive == 0) {
+      shape.primitives.push_back({material, {}});
+      primitive = shape.primitives.size();
     }
     if (poll.after(4 * static_cast<std::size_t>(mesh.face_sizes[face]))) return interrupted();
     for (int k = 0; k < mesh.face_sizes[face] - 2; ++k, ++triangle) {
       for (const int corner : triangles[triangle])
-        shape.parts[part - 1].corners.push_back(corners[static_cast<std::size_t>(corner)]);
+        shape.primitives[primitive - 1].corners.push_back(
+            corners[static_cast<std::size_t>(corner)]);
     }
   }
   return shape;

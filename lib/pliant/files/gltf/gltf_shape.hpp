@@ -13,17 +13,17 @@ namespace pliant {
 // vertex. Internal to output.
 struct GltfShape {
   /// One material's triangles.
-  struct Part {
+  struct Primitive {
     int material = -1;  ///< index into the mesh's, -1: none
     std::vector<std::uint32_t> corners;
   };
 
   // A vertex of the mesh keeps its index. Its corners whose (u,v) or normal differ from its first
   // corner's have vertices of their own, after all those of the mesh.
-  std::vector<int> source;   ///< #vertices: vertex of the mesh
-  std::vector<int> uvs;      ///< #vertices: index into the mesh's (u,v), -1: none
-  std::vector<int> normals;  ///< #vertices: index of the mesh's normal, -1: none
-  std::vector<Part> parts;   ///< in the order of the materials' first use by a face
+  std::vector<int> source;            ///< #vertices: vertex of the mesh
+  std::vector<int> uvs;               ///< #vertices: index into the mesh's (u,v), -1: none
+  std::vector<int> normals;           ///< #vertices: index of the mesh's normal, -1: none
+  std::vector<Primitive> primitives;  ///< in the order of the materials' first use by a face
 };
 
 /// Errors: Interrupted. Cost: that of `triangulate`, and n log n in the corners.

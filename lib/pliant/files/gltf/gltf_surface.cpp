@@ -124,11 +124,11 @@ Result<void> GltfSurface::begin(const Field& rest, int frame, GltfBuffer& buffer
     if (!uvs) return fail(uvs.error());
     attributes_["TEXCOORD_0"] = *uvs;
   }
-  for (GltfShape::Part& part : shape_.parts) {
-    const auto indices = buffer.add_indices(part.corners);
+  for (GltfShape::Primitive& primitive : shape_.primitives) {
+    const auto indices = buffer.add_indices(primitive.corners);
     if (!indices) return fail(indices.error());
     indices_.push_back(*indices);
-    part.corners = {};
+    primitive.corners = {};
   }
   return {};
 }
@@ -203,8 +203,8 @@ Json GltfSurface::mesh(const std::function<std::size_t(const std::string&)>& mat
     names.push_back(fmt::format("frame {}", target.frame));
   }
   Json primitives = Json::array();
-  for (std::size_t k = 0; k < shape_.parts.size(); ++k) {
-    const int material = shape_.parts[k].material;
+  for (std::size_t k = 0; k < shape_.primitives.size(); ++k) {
+    const int material = shape_.primitives[k].material;
     Json primitive = {
         {"attributes", attributes_},
         {"indices", indices_[k]},

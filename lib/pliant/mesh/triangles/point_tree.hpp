@@ -16,7 +16,7 @@ class PointTree {
   static constexpr int leaf_size = 32;
 
   /// The points [first, first + count) of `points`, in their smallest box.
-  struct Part {
+  struct Cluster {
     Vector3d low = {0, 0, 0};   ///< the least of their x, y and z [length]
     Vector3d high = {0, 0, 0};  ///< the largest
     int first = 0;
@@ -34,7 +34,7 @@ class PointTree {
   explicit PointTree(const Field& points) : PointTree(*make(points, {})) {}
 
   /// The whole first; empty without points.
-  const std::vector<Part>& parts() const { return parts_; }
+  const std::vector<Cluster>& clusters() const { return clusters_; }
 
   /// The points in the order of the leaves, #points x 3 [length].
   const Field& points() const { return points_; }
@@ -43,7 +43,7 @@ class PointTree {
   const std::vector<int>& rows() const { return rows_; }
 
  private:
-  std::vector<Part> parts_;
+  std::vector<Cluster> clusters_;
   Field points_;
   std::vector<int> rows_;
 };

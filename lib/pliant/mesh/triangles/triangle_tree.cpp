@@ -82,10 +82,10 @@ Result<TriangleTree> TriangleTree::make(const Field& points,
   tree.points_ = points;
   tree.triangles_ = std::move(triangles);
   tree.centres_ = *std::move(centres);
-  const std::vector<PointTree::Part>& parts = tree.centres_.parts();
+  const std::vector<PointTree::Cluster>& clusters = tree.centres_.clusters();
   std::vector<Box>& boxes = tree.boxes_;
-  boxes.resize(parts.size());
-  for (std::size_t k = parts.size(); k-- > 0;) {  // children come after their parents
+  boxes.resize(clusters.size());
+  for (std::size_t k = clusters.size(); k-- > 0;) {  // children come after their parents
     if (poll.after(100)) return interrupted();
     Box box{Vector3d::Constant(std::numeric_limits<double>::infinity()), {}};
     box.high = -box.low;
@@ -93,15 +93,15 @@ Result<TriangleTree> TriangleTree::make(const Field& points,
       box.low = box.low.cwiseMin(low);
       box.high = box.high.cwiseMax(high);
     };
-    if (parts[k].is_leaf()) {
-      for (int n = parts[k].first; n < parts[k].first + parts[k].count; ++n) {
+    if (clusters[k].is_leaf()) {
+      for (int n = clusters[k].first; n < clusters[k].first + clusters[k].count; ++n) {
         for (const int corner : tree.triangles_[tree.centres_.rows()[n]]) {
           const Vector3d point = points.row(corner).transpose();
           include(point, point);
         }
       }
     } else {
-      for (const int child : {parts[k].child, parts[k].child + 1})
+      for (const int child : {clusters[k].child, clusters[k].child + 1})
         include(boxes[child].low, boxes[child].high);
     }
     boxes[k] = box;
@@ -109,10 +109,11 @@ Result<TriangleTree> TriangleTree::make(const Field& points,
   return tree;
 }
 
-// To a part's box; a little less, so that rounding never hides a triangle that is equally close.
-double TriangleTree::squared_distance(int part, const Vector3d& p) const {
+// To the box of a cluster; a little less, so that rounding never hides a triangle that is equally
+// close.
+double TriangleTree::squared_distance(int cluster, const Vector3d& p) const {
   constexpr double slack = 1 - 1e-12;
-  const Box& box = boxes_[part];
+  const Box& box = boxes_[cluster];
   const Vector3d way = (box.low - p).cwiseMax(p - box.high).cwiseMax(Vector3d::Zero());
   return slack * way.squaredNorm();
 }
@@ -129,10 +130,10 @@ ClosestPoint TriangleTree::closest(const Vector3d& p, int near) const {
   try_triangle(near, p, found);
   std::vector<std::pair<double, int>> open = {{squared_distance(0, p), 0}};
   while (!open.empty()) {
-    const auto [least, part] = open.back();
+    const auto [least, cluster] = open.back();
     open.pop_back();
     if (least > found.squared_distance) continue;
-    const PointTree::Part& here = centres_.parts()[part];
+    const PointTree::Cluster& here = centres_.clusters()[cluster];
     if (here.is_leaf()) {
       for (int n = here.first; n < here.first + here.count; ++n)
         try_triangle(centres_.rows()[n], p, found);

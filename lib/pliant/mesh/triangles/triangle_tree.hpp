@@ -40,12 +40,12 @@ class TriangleTree {
   };
 
   void try_triangle(int triangle, const Vector3d& p, Found& found) const;
-  double squared_distance(int part, const Vector3d& p) const;
+  double squared_distance(int cluster, const Vector3d& p) const;
 
   Field points_;
   std::vector<std::array<int, 3>> triangles_;
   PointTree centres_;       // of the triangles
-  std::vector<Box> boxes_;  // one for each part of the tree, around its triangles
+  std::vector<Box> boxes_;  // one for each cluster of the tree, around its triangles
 };
 
 }  // namespace pliant

@@ -14,7 +14,7 @@ namespace {
 
 double squared(const Vector3d& a) { return a[0] * a[0] + a[1] * a[1] + a[2] * a[2]; }
 
-// Joins the points of a tree by pairs of its parts that are near to each other.
+// Joins the points of a tree by pairs of its clusters that are near to each other.
 class Welding {
  public:
   Welding(const PointTree& tree, double distance, const StopRequest& should_stop)
@@ -26,7 +26,7 @@ class Welding {
         poll_(should_stop) {}
 
   Result<void> run() {
-    if (!tree_.parts().empty()) within(tree_.parts()[0]);
+    if (!tree_.clusters().empty()) within(tree_.clusters()[0]);
     if (poll_.after(0)) return interrupted();
     if (steps_left_ > 0) return {};
     return invalid(
@@ -38,15 +38,17 @@ class Welding {
   int first_of(int row) { return sets_.first_of(row); }
 
  private:
-  using Part = PointTree::Part;
+  using Cluster = PointTree::Cluster;
 
   // Points can lie so that almost all pairs of them are almost near: this bounds the work. A grid
   // with that distance as its spacing takes some 100 steps a point.
   static constexpr std::size_t most_steps_of_point = 1000, least_steps = 100'000;
 
-  const Part& half(const Part& part, int k) const { return tree_.parts()[part.child + k]; }
+  const Cluster& half(const Cluster& cluster, int k) const {
+    return tree_.clusters()[cluster.child + k];
+  }
   int row(int point) const { return tree_.rows()[point]; }
-  bool is_one(const Part& part) const { return are_near(part.high - part.low); }
+  bool is_one(const Cluster& cluster) const { return are_near(cluster.high - cluster.low); }
   bool are_near(const Vector3d& apart) const {
     // The square of a tiny distance may underflow.
     return squared(apart) <= squared_distance_ && apart.cwiseAbs().maxCoeff() <= distance_;
@@ -54,41 +56,41 @@ class Welding {
   bool are_near(int a, int b) const {
     return are_near((tree_.points().row(a) - tree_.points().row(b)).transpose());
   }
-  bool is_near(int point, const Part& part) const {
+  bool is_near(int point, const Cluster& cluster) const {
     const Vector3d place = tree_.points().row(point).transpose();
-    return are_near((part.low - place).cwiseMax(place - part.high).cwiseMax(0));
+    return are_near((cluster.low - place).cwiseMax(place - cluster.high).cwiseMax(0));
   }
 
-  // Whether to go on after some more pairs of points or parts.
+  // Whether to go on after some more pairs of points or clusters.
   bool may_go_on(int steps) {
-    constexpr std::size_t parts_of_step = 8;
+    constexpr std::size_t clusters_of_step = 8;
     const auto count = static_cast<std::size_t>(steps);
     steps_left_ -= std::min(count, steps_left_);
-    return !poll_.after(parts_of_step * count) && steps_left_ > 0;
+    return !poll_.after(clusters_of_step * count) && steps_left_ > 0;
   }
 
-  void within(const Part& part) {
+  void within(const Cluster& cluster) {
     if (!may_go_on(1)) return;
-    const int end = part.first + part.count;
-    if (is_one(part)) {
-      for (int a = part.first + 1; a < end && may_go_on(1); ++a)
-        sets_.join(row(part.first), row(a));
+    const int end = cluster.first + cluster.count;
+    if (is_one(cluster)) {
+      for (int a = cluster.first + 1; a < end && may_go_on(1); ++a)
+        sets_.join(row(cluster.first), row(a));
       return;
     }
-    if (part.is_leaf()) {
-      for (int a = part.first; a < end && may_go_on(end - a); ++a) {
+    if (cluster.is_leaf()) {
+      for (int a = cluster.first; a < end && may_go_on(end - a); ++a) {
         for (int b = a + 1; b < end; ++b) {
           if (are_near(a, b)) sets_.join(row(a), row(b));
         }
       }
       return;
     }
-    within(half(part, 0));
-    within(half(part, 1));
-    between(half(part, 0), half(part, 1));
+    within(half(cluster, 0));
+    within(half(cluster, 1));
+    between(half(cluster, 0), half(cluster, 1));
   }
 
-  void between(const Part& a, const Part& b) {
+  void between(const Cluster& a, const Cluster& b) {
     if (!may_go_on(1)) return;
     const Vector3d gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
     if (!are_near(gap)) return;
@@ -105,8 +107,8 @@ class Welding {
       return;
     }
     const bool is_a_split = !a.is_leaf() && (b.is_leaf() || a.count >= b.count);
-    const Part& split = is_a_split ? a : b;
-    const Part& other = is_a_split ? b : a;
+    const Cluster& split = is_a_split ? a : b;
+    const Cluster& other = is_a_split ? b : a;
     between(half(split, 0), other);
     between(half(split, 1), other);
   }

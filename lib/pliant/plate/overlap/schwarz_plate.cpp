@@ -68,7 +68,7 @@ void SchwarzPlate::for_each_block(const Work& work) {
 }
 
 void SchwarzPlate::let_go() {
-  parts_.clear();
+  problems_.clear();
   plates_.clear();
   numbers_ = NumberBlock();
   (void)memory_.try_resize(0);  // less memory is always available
@@ -76,7 +76,7 @@ void SchwarzPlate::let_go() {
 
 Result<void> SchwarzPlate::prepare(const Outline& outline, const Stiffness& stiffness,
                                    double shift) try {
-  const bool are_same_nodes = !parts_.empty() && have_same_nodes(outline, system_.outline);
+  const bool are_same_nodes = !problems_.empty() && have_same_nodes(outline, system_.outline);
   const Grid& grid = outline.grid();
   if (is_prepared_ && are_same_nodes && grid == system_.outline.grid() &&
       stiffness == system_.stiffness && shift == system_.shift) {
@@ -90,9 +90,10 @@ Result<void> SchwarzPlate::prepare(const Outline& outline, const Stiffness& stif
     if (auto laid_out = lay_out(); !laid_out) return laid_out;
   }
   ++counts_.factorizations;
-  for (const Part& part : parts_) {
-    const Grid with_rim{part.area.box.columns() + 2, part.area.box.rows() + 2, grid.hu, grid.hv};
-    if (auto ready = part.plate->prepare({with_rim, stiffness, shift}); !ready) {
+  for (const LocalProblem& problem : problems_) {
+    const Grid with_rim{problem.subdomain.box.columns() + 2, problem.subdomain.box.rows() + 2,
+                        grid.hu, grid.hv};
+    if (auto ready = problem.plate->prepare({with_rim, stiffness, shift}); !ready) {
       let_go();
       return ready;
     }
@@ -127,8 +128,8 @@ Result<void> SchwarzPlate::lay_out() {
   const std::size_t above = (std::size_t(grid.columns) + 2 + unit - 1) / unit * unit;
   const std::size_t field =
       (std::size_t(grid.node_count()) + 2 * above + 511) / 512 * 512 + 3 * unit;
-  const std::size_t part_field = (largest + 511) / 512 * 512 + 3 * unit;
-  const std::size_t count = 18 * field + 3 * part_field + 3 * rows_.block_count();
+  const std::size_t local_field = (largest + 511) / 512 * 512 + 3 * unit;
+  const std::size_t count = 18 * field + 3 * local_field + 3 * rows_.block_count();
   constexpr std::size_t bytes_along_side = 2 * sizeof(RowBlocks::Edge) + 10 * sizeof(long);
   const std::size_t bytes = count * sizeof(double) + rows_.memory() + sides * bytes_along_side +
                             system_.outline.mask().size();
@@ -144,31 +145,31 @@ Result<void> SchwarzPlate::lay_out() {
       next += field;
     }
   }
-  for (double*& component : part_correction_.of) {
+  for (double*& component : local_correction_.of) {
     component = next;
-    next += part_field;
+    next += local_field;
   }
   block_sums_ = next;
-  make_parts(cover);
+  make_problems(cover);
   ++counts_.analyses;
   return {};
 }
 
-void SchwarzPlate::make_parts(const std::vector<Box>& cover) {
+void SchwarzPlate::make_problems(const std::vector<Box>& cover) {
   for (const Box& box : cover) {
-    Part part{overlap_part(system_.outline, box), nullptr};
+    LocalProblem problem{subdomain_of(system_.outline, box), nullptr};
     // Rectangles of one size share a plate.
-    for (const Part& other : parts_) {
-      const Box& earlier = other.area.box;
+    for (const LocalProblem& other : problems_) {
+      const Box& earlier = other.subdomain.box;
       if (earlier.columns() == box.columns() && earlier.rows() == box.rows()) {
-        part.plate = other.plate;
+        problem.plate = other.plate;
       }
     }
-    if (!part.plate) {
+    if (!problem.plate) {
       plates_.push_back(std::make_unique<SpectralPlate>(context_));
-      part.plate = plates_.back().get();
+      problem.plate = plates_.back().get();
     }
-    parts_.push_back(std::move(part));
+    problems_.push_back(std::move(problem));
   }
 }
 
@@ -232,31 +233,31 @@ void SchwarzPlate::apply_rounds() {
     if (is_active_[component]) continue;
     std::fill_n(product_.of[component], system_.outline.grid().node_count(), 0.0);
   }
-  const std::size_t count = parts_.size();
-  for (std::size_t k = 0; k < count; ++k) visit(parts_[k], k + 1 == count && once_ == count);
-  for (std::size_t k = count - once_; k-- > 0;) visit(parts_[k], k == 0);
+  const std::size_t count = problems_.size();
+  for (std::size_t k = 0; k < count; ++k) visit(problems_[k], k + 1 == count && once_ == count);
+  for (std::size_t k = count - once_; k-- > 0;) visit(problems_[k], k == 0);
 }
 
-void SchwarzPlate::visit(const Part& part, bool is_last) {
+void SchwarzPlate::visit(const LocalProblem& problem, bool is_last) {
   const long M = system_.outline.grid().columns;
-  const long first = part.area.box.j0 * M + part.area.box.i0;
-  const long width = part.area.box.columns();
+  const long first = problem.subdomain.box.j0 * M + problem.subdomain.box.i0;
+  const long width = problem.subdomain.box.columns();
   const ConstNodesView left{product_.of[0] + first, M, product_.of[1] - product_.of[0]};
-  const NodesView corrected{part_correction_.of[0], width,
-                            part_correction_.of[1] - part_correction_.of[0]};
-  part.plate->solve(left, corrected);
+  const NodesView corrected{local_correction_.of[0], width,
+                            local_correction_.of[1] - local_correction_.of[0]};
+  problem.plate->solve(left, corrected);
   for_each(3, [&](std::size_t component) {
-    if (is_active_[component]) take_correction(part, static_cast<int>(component), is_last);
+    if (is_active_[component]) take_correction(problem, static_cast<int>(component), is_last);
   });
 }
 
 // Adds a rectangle's part y to z and subtracts A y from the rest. On the rectangle, the rest is
 // then only the excess of the clamped sides over A, eq. (35); around it, the stencil's values.
-void SchwarzPlate::take_correction(const Part& part, int component, bool is_last) {
+void SchwarzPlate::take_correction(const LocalProblem& problem, int component, bool is_last) {
   const long M = system_.outline.grid().columns;
-  const Box& box = part.area.box;
+  const Box& box = problem.subdomain.box;
   const long width = box.columns();
-  const double* const y = part_correction_.of[component];
+  const double* const y = local_correction_.of[component];
   double* const z = correction_.of[component];
   double* const left = product_.of[component];
   for (int j = box.j0; j <= box.j1; ++j) {
@@ -271,10 +272,10 @@ void SchwarzPlate::take_correction(const Part& part, int component, bool is_last
     const bool is_here = box.i0 <= i && i <= box.i1 && box.j0 <= j && j <= box.j1;
     return is_here ? y[(j - box.j0) * width + (i - box.i0)] : 0;
   };
-  for (const auto& [node, along_u, along_v] : part.area.facing) {
+  for (const auto& [node, along_u, along_v] : problem.subdomain.facing) {
     left[node] += weights.ghosts(along_u, along_v) * at(node % M, node / M);
   }
-  for (const long node : part.area.around) {
+  for (const long node : problem.subdomain.around) {
     const long i = node % M;
     const long j = node / M;
     left[node] -= weights.apply([&](int di, int dj) { return at(i + di, j + dj); });
@@ -333,7 +334,7 @@ Result<void> SchwarzPlate::correct() {
     return fail(ErrorCode::SolverFailed,
                 fmt::format("the plate of {} unknowns is not solved after {} rounds over its {} "
                             "rectangles",
-                            system_.outline.unknown_count(), max_rounds_, parts_.size()));
+                            system_.outline.unknown_count(), max_rounds_, problems_.size()));
   }
   ++rounds_;
   apply_rounds();

@@ -10,7 +10,7 @@
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/outline/row_blocks.hpp"
-#include "pliant/plate/overlap/overlap_part.hpp"
+#include "pliant/plate/overlap/subdomain.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/spectral/spectral_plate.hpp"
@@ -54,9 +54,9 @@ class SchwarzPlate {
   std::size_t memory() const;
 
  private:
-  // A rectangle of the cover.
-  struct Part {
-    OverlapPart area;
+  // The plate of a rectangle of the cover, clamped on all sides.
+  struct LocalProblem {
+    Subdomain subdomain;
     SpectralPlate* plate;
   };
   // A field on all nodes, surrounded by rows of zeros; 0 at nodes that are not interior.
@@ -67,7 +67,7 @@ class SchwarzPlate {
 
   Result<void> lay_out();
   void let_go();
-  void make_parts(const std::vector<Box>& cover);
+  void make_problems(const std::vector<Box>& cover);
   Result<void> iterate();
   bool settle_if_free(int component);
   Result<void> run(bool (&is_unsolved)[3]);
@@ -76,8 +76,8 @@ class SchwarzPlate {
   bool is_any_active() const { return is_active_[0] || is_active_[1] || is_active_[2]; }
   void find_residual();
   void apply_rounds();
-  void visit(const Part& part, bool is_last);
-  void take_correction(const Part& part, int component, bool is_last);
+  void visit(const LocalProblem& problem, bool is_last);
+  void take_correction(const LocalProblem& problem, int component, bool is_last);
   void apply_operator();
   void dot(const NodeField& a, const NodeField& b, Sums& total);
   void add(const NodeField& from, const Sums& factor, const NodeField& to);
@@ -101,12 +101,12 @@ class SchwarzPlate {
   double trusted_gain_ = 0;  // how far a residual may fall before it is recomputed
   RowBlocks rows_;
   std::vector<std::unique_ptr<SpectralPlate>> plates_;  // one for each size of rectangle
-  std::vector<Part> parts_;
-  std::size_t once_ = 0;  // number of parts, at the end, that a round visits once
+  std::vector<LocalProblem> problems_;
+  std::size_t once_ = 0;  // number of problems, at the end, that a round visits once
   NumberBlock numbers_;
   NodeField load_, solution_, residual_, correction_, direction_;
-  NodeField product_;          // operator times direction; during a round, the rest of a residual
-  NodeField part_correction_;  // of one rectangle, row after row
+  NodeField product_;           // operator times direction; during a round, the rest of a residual
+  NodeField local_correction_;  // of one rectangle, row after row
   double* block_sums_ = nullptr;
   bool is_active_[3] = {};  // components that are not solved yet
 };

@@ -18,10 +18,10 @@ constexpr std::size_t most_tables = 2;
 
 ComplexNumber number_of(Complex a) { return {a.re, a.im}; }
 
-// Hands out parts of one block, each on its own cache line; with a null block it only counts.
-class BlockParts {
+// Hands out arrays of one block, each on its own cache line; with a null block it only counts.
+class Carver {
  public:
-  explicit BlockParts(double* block) : block_(block) {}
+  explicit Carver(double* block) : block_(block) {}
 
   double* take(long count) {
     constexpr std::size_t unit = NumberBlock::line / sizeof(double);
@@ -41,31 +41,31 @@ class BlockParts {
 
 // Lays out the workspace; with a null block it only counts.
 std::size_t SpectralMotion::carve(double* block) {
-  BlockParts parts(block);
+  Carver carver(block);
   for (CachedLoad& cached : cached_loads_) {
-    cached.nodes = parts.take(long{plate_.rows_ - 2} * (plate_.columns_ - 2));
+    cached.nodes = carver.take(long{plate_.rows_ - 2} * (plate_.columns_ - 2));
   }
   for (int k = 0; k < 4; ++k) {
     SpectralPlate::Parity& parity = plate_.parities_[k];
     const long size = long{parity.rows} * parity.pitch;
-    diagonal_[k] = parts.take(size);
+    diagonal_[k] = carver.take(size);
     for (int component = 0; component < 3; ++component) {
-      PartWork& work = work_[k][component];
+      BlockWork& work = work_[k][component];
       ExactView& view = work.view;
-      for (double*& sines : cached_loads_[component].sines[k]) sines = parts.take(size);
-      work.growth = parts.take(size);
+      for (double*& sines : cached_loads_[component].sines[k]) sines = carver.take(size);
+      work.growth = carver.take(size);
       work.w[0] = parity.displacement[component];
       work.v[0] = parity.pending[component];
-      work.w[1] = parts.take(size);
-      work.v[1] = parts.take(size);
-      work.doubt = parts.take(size);
-      work.lack = parts.take(size);
-      view.row_sums = parts.take(2L * shift_count * parity.rows);
-      view.column_sums = parts.take(2L * shift_count * parity.columns);
-      view.edge = parts.take(4L * shift_count * parity.columns);
+      work.w[1] = carver.take(size);
+      work.v[1] = carver.take(size);
+      work.doubt = carver.take(size);
+      work.lack = carver.take(size);
+      view.row_sums = carver.take(2L * shift_count * parity.rows);
+      view.column_sums = carver.take(2L * shift_count * parity.columns);
+      view.edge = carver.take(4L * shift_count * parity.columns);
     }
   }
-  return parts.used();
+  return carver.used();
 }
 
 Result<void> SpectralMotion::reserve(std::size_t tables) {
@@ -128,17 +128,17 @@ Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
   Tables tables;
   tables.length = length;
   const auto carve_tables = [&](double* block) {
-    BlockParts parts(block);
+    Carver carver(block);
     for (int k = 0; k < 4; ++k) {
       const SpectralPlate::Parity& parity = plate_.parities_[k];
       const long size = long{parity.rows} * parity.pitch;
       const long inverse = long{parity.columns} * parity.inverse_pitch;
       for (ShiftTables& of_pole : tables.of[k]) {
-        of_pole = {parts.take(size),        parts.take(size),    parts.take(parity.rows),
-                   parts.take(parity.rows), parts.take(inverse), parts.take(inverse)};
+        of_pole = {carver.take(size),        carver.take(size),    carver.take(parity.rows),
+                   carver.take(parity.rows), carver.take(inverse), carver.take(inverse)};
       }
     }
-    return parts.used();
+    return carver.used();
   };
   table_size_ = carve_tables(nullptr);
   if (auto reserved = reserve(tables_.size() + 1); !reserved) return fail(reserved.error());
@@ -172,10 +172,10 @@ Result<SpectralMotion::Tables*> SpectralMotion::tables_for(double length) {
 }
 
 // From w[0] and v[0] to w[1] and v[1].
-void SpectralMotion::step(std::size_t part, int number, const SubStep& step, const Tables& tables,
+void SpectralMotion::step(std::size_t block, int number, const SubStep& step, const Tables& tables,
                           bool has_doubt) {
-  const auto [k, component] = parts_.part[part];
-  PartWork& work = work_[k][component];
+  const auto [k, component] = blocks_.all[block];
+  BlockWork& work = work_[k][component];
   ExactView& view = work.view;
   view.w = work.w[0];
   view.v = work.v[0];
@@ -208,9 +208,9 @@ void SpectralMotion::step(std::size_t part, int number, const SubStep& step, con
 }
 
 // The sizes of the state that begins the next step (0), or that the last one made (1).
-void SpectralMotion::measure(std::size_t part, int at) {
-  const auto [k, component] = parts_.part[part];
-  PartWork& work = work_[k][component];
+void SpectralMotion::measure(std::size_t block, int at) {
+  const auto [k, component] = blocks_.all[block];
+  BlockWork& work = work_[k][component];
   const ParityView parity = plate_.view_of(k);
   work.sizes.w[at] = plate_.kernels_.exact_size(parity, work.w[at]);
   work.sizes.v[at] = plate_.kernels_.exact_size(parity, work.v[at]);
@@ -220,22 +220,22 @@ void SpectralMotion::measure(std::size_t part, int at) {
 // The steps after the first one. False: stopped.
 bool SpectralMotion::finish(int count, const SubStep& length, const Tables& tables) {
   std::atomic<bool> is_stopped = false;
-  // A step of a large part takes a while.
+  // A step of a large block takes a while.
   const bool is_large = long{plate_.columns_} * plate_.rows_ > 100'000;
-  plate_.for_each(parts_.count, [&](std::size_t part) {
-    const auto [k, component] = parts_.part[part];
-    PartWork& work = work_[k][component];
+  plate_.for_each(blocks_.count, [&](std::size_t block) {
+    const auto [k, component] = blocks_.all[block];
+    BlockWork& work = work_[k][component];
     for (int number = 1; number <= count; ++number) {
       std::swap(work.w[0], work.w[1]);
       std::swap(work.v[0], work.v[1]);
       if (number == count) break;
       if (is_stopped) return;
-      const bool asks = is_large || static_cast<std::size_t>(number) % parts_.count == part;
+      const bool asks = is_large || static_cast<std::size_t>(number) % blocks_.count == block;
       if (asks && context_.is_stopped()) {
         is_stopped = true;
         return;
       }
-      step(part, number, length, tables, false);
+      step(block, number, length, tables, false);
     }
   });
   counts_.solves += 2L * pole_count * (count - 1);
@@ -323,25 +323,25 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
   take_state();
   if (context_.is_stopped()) return interrupted();
   const bool grows = take_loads(first_load, last_load);
-  parts_ = plate_.moving_parts();
-  if (parts_.count == 0) return {};
+  blocks_ = plate_.moving_blocks();
+  if (blocks_.count == 0) return {};
   if (grows) {
-    plate_.for_each(parts_.count, [&](std::size_t part) {
-      const auto [k, component] = parts_.part[part];
+    plate_.for_each(blocks_.count, [&](std::size_t block) {
+      const auto [k, component] = blocks_.all[block];
       const SpectralPlate::Parity& parity = plate_.parities_[k];
       const long size = long{parity.rows} * parity.pitch;
-      PartWork& work = work_[k][component];
+      BlockWork& work = work_[k][component];
       const double* const last = parity.growth[component];
       for (long n = 0; n < size; ++n) work.growth[n] = (last[n] - work.view.load[n]) / steps.length;
     });
   }
 
   StepChoice choice(steps);
-  // The size of the motion in a state of all parts.
+  // The size of the motion in a state of all blocks.
   const auto size_of = [&](int at) {
     double displacement = 0, speed = 0;
-    for (std::size_t part = 0; part < parts_.count; ++part) {
-      const auto [k, component] = parts_.part[part];
+    for (std::size_t block = 0; block < blocks_.count; ++block) {
+      const auto [k, component] = blocks_.all[block];
       displacement += work_[k][component].sizes.w[at];
       speed += work_[k][component].sizes.v[at];
     }
@@ -354,18 +354,18 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     const auto tables = tables_for(length.length);
     if (!tables) return fail(tables.error());
     std::atomic<bool> is_stopped = false;
-    plate_.for_each(parts_.count, [&](std::size_t part) {
+    plate_.for_each(blocks_.count, [&](std::size_t block) {
       if (!is_stopped && context_.is_stopped()) is_stopped = true;
       if (is_stopped) return;
-      step(part, 0, length, **tables, true);
-      measure(part, 0);
-      measure(part, 1);
+      step(block, 0, length, **tables, true);
+      measure(block, 0);
+      measure(block, 1);
     });
     if (is_stopped) return interrupted();
     counts_.solves += 2 * pole_count;
     double squared_doubt = 0;
-    for (std::size_t part = 0; part < parts_.count; ++part) {
-      const auto [k, component] = parts_.part[part];
+    for (std::size_t block = 0; block < blocks_.count; ++block) {
+      const auto [k, component] = blocks_.all[block];
       squared_doubt += work_[k][component].sizes.doubt;
     }
     const double doubt = std::sqrt(squared_doubt), before = size_of(0), after = size_of(1);
@@ -376,14 +376,14 @@ Result<void> SpectralMotion::advance(const PlateSystem& system, const Dynamics& 
     }
     is_done = true;
     if (!looks_ahead) continue;
-    plate_.for_each(parts_.count, [&](std::size_t part) { measure(part, 0); });
+    plate_.for_each(blocks_.count, [&](std::size_t block) { measure(block, 0); });
     is_done = choice.accepts(doubt, size_of(0));
     if (!is_done) take_state();
   }
   // Read where the last step put them.
   const auto exchange_places = [&] {
-    for (std::size_t part = 0; part < parts_.count; ++part) {
-      const auto [k, component] = parts_.part[part];
+    for (std::size_t block = 0; block < blocks_.count; ++block) {
+      const auto [k, component] = blocks_.all[block];
       std::swap(plate_.parities_[k].displacement[component], work_[k][component].w[0]);
       std::swap(plate_.parities_[k].pending[component], work_[k][component].v[0]);
     }

@@ -33,8 +33,8 @@ class SpectralMotion {
     NumberBlock numbers;
     ShiftTables of[4][pole_count];  // by parity
   };
-  // One component in one pair of parities.
-  struct PartWork {
+  // Of a block of the plate.
+  struct BlockWork {
     ExactView view;
     double* w[2] = {};  // now and next, in turn
     double* v[2] = {};
@@ -60,9 +60,9 @@ class SpectralMotion {
   bool take_loads(const ConstNodesView& first_load, const ConstNodesView& last_load);
   Result<Tables*> tables_for(double length);
   std::size_t carve(double* block);
-  void step(std::size_t part, int number, const SubStep& step, const Tables& tables,
+  void step(std::size_t block, int number, const SubStep& step, const Tables& tables,
             bool has_doubt);
-  void measure(std::size_t part, int at);
+  void measure(std::size_t block, int at);
   bool finish(int count, const SubStep& length, const Tables& tables);
   Result<void> reserve(std::size_t tables);
 
@@ -76,9 +76,9 @@ class SpectralMotion {
   double* diagonal_[4] = {};  // D, by parity
   double beta_ = 0, delta_ = 0;
   std::size_t table_size_ = 0;  // numbers
-  PartWork work_[4][3];
+  BlockWork work_[4][3];
   CachedLoad cached_loads_[3];
-  SpectralPlate::Parts parts_;
+  SpectralPlate::Blocks blocks_;
   std::list<Tables> tables_;  // the last used first
 };
 

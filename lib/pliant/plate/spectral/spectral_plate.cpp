@@ -26,7 +26,7 @@ int modes_of(int parity, int length) {
 
 }  // namespace
 
-// Allocates parts of one block, each on its own cache line; with a null block it only counts.
+// Hands out arrays of one block, each on its own cache line; with a null block it only counts.
 class SpectralPlate::Carver {
  public:
   explicit Carver(double* block) : block_(block) {}
@@ -380,16 +380,16 @@ void SpectralPlate::clear(const NodesView& field, int component) const {
   }
 }
 
-// Independent parts of a step: one component of one pair of parities, unless it is 0.
-SpectralPlate::Parts SpectralPlate::moving_parts() const {
-  Parts parts;
+// Those in which not all is 0.
+SpectralPlate::Blocks SpectralPlate::moving_blocks() const {
+  Blocks blocks;
   for (int k = 0; k < 4; ++k) {
     if (parities_[k].rows == 0 || parities_[k].columns == 0) continue;
     for (int component = 0; component < 3; ++component) {
-      if (!is_still_[component]) parts.part[parts.count++] = {k, component};
+      if (!is_still_[component]) blocks.all[blocks.count++] = {k, component};
     }
   }
-  return parts;
+  return blocks;
 }
 
 // The number of parts in which a field is transformed. Columns are independent, so no bit depends
@@ -418,9 +418,9 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
     if (is_still_[component]) clear(solution, component);
   }
   to_sines(load, &Parity::load);
-  const Parts parts = moving_parts();
-  for_each(parts.count, [&](std::size_t task) {
-    const auto [k, index] = parts.part[task];
+  const Blocks blocks = moving_blocks();
+  for_each(blocks.count, [&](std::size_t task) {
+    const auto [k, index] = blocks.all[task];
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, index);
     const long size = long{parity.rows} * parity.pitch;
@@ -439,9 +439,9 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
   std::fill_n(is_still_, 3, true);
   for (const int component : components) is_still_[component] = false;
   to_sines(load, &Parity::load);
-  const Parts parts = moving_parts();
-  for_each(parts.count, [&](std::size_t task) {
-    const auto [k, index] = parts.part[task];
+  const Blocks blocks = moving_blocks();
+  for_each(blocks.count, [&](std::size_t task) {
+    const auto [k, index] = blocks.all[task];
     kernels_.solve(view_of(k), component_of(k, index));
   });
   from_sines(&Parity::displacement, solution);
@@ -467,9 +467,9 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   const StepFactors factors =
       is_reflected ? StepFactors{2 * (shift + keep), 2 * keep} : StepFactors{shift + keep, keep};
   std::atomic<bool> is_stopped = false;
-  const Parts parts = moving_parts();
+  const Blocks blocks = moving_blocks();
   const auto run = [&](std::size_t task, int first, int last) {
-    const auto [k, index] = parts.part[task];
+    const auto [k, index] = blocks.all[task];
     const ParityView parity = view_of(k);
     const ComponentView component = component_of(k, index);
     if (first == 1) {
@@ -477,8 +477,8 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
     }
     for (int step = first; step <= last; ++step) {
       if (is_stopped) return;
-      // The parts ask in turn, so that the stop request is called once per step.
-      const bool asks = static_cast<std::size_t>(step - 1) % parts.count == task;
+      // The blocks ask in turn, so that the stop request is called once per step.
+      const bool asks = static_cast<std::size_t>(step - 1) % blocks.count == task;
       if (asks && context_.is_stopped()) {
         is_stopped = true;
         return;
@@ -495,7 +495,7 @@ bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const Ti
   // All steps at once, unless somebody looks at each.
   const int together = watch ? 1 : steps.count;
   for (int first = 1; first <= steps.count; first += together) {
-    for_each(parts.count, [&](std::size_t task) { run(task, first, first + together - 1); });
+    for_each(blocks.count, [&](std::size_t task) { run(task, first, first + together - 1); });
     if (is_stopped) return false;
     counts_.solves += together;
     from_sines(&Parity::displacement, displacement);

@@ -96,12 +96,13 @@ class SpectralPlate {
   struct Range {
     int first, last;
   };
-  struct Part {
+  // Independent of the others: one component in one pair of parities.
+  struct Block {
     int parity, component;
   };
-  struct Parts {
+  struct Blocks {
     std::size_t count = 0;
-    Part part[12] = {};
+    Block all[12] = {};
   };
 
   Result<void> lay_out(int columns, int rows);
@@ -115,7 +116,7 @@ class SpectralPlate {
   bool is_zero(const ConstNodesView& field, int component) const;
   bool are_equal(const ConstNodesView& one, const ConstNodesView& other) const;
   void clear(const NodesView& field, int component) const;
-  Parts moving_parts() const;
+  Blocks moving_blocks() const;
   std::size_t chunk_count() const;
   Range chunk(std::size_t task, int count) const;
   int between_width() const;

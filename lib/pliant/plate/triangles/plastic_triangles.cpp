@@ -61,15 +61,18 @@ PlasticTriangles::PlasticTriangles(const TriangleCells& cells, const std::vector
       const std::array<Curvature, 6> by_value = shape.by_value();
       const double share = shape.area / areas_[triangle];
       for_each_unknown(cells, cell, [&](const CellUnknown& unknown) {
-        const auto own = parts_.begin() + static_cast<std::ptrdiff_t>(part_starts_.back());
-        auto part = std::find_if(own, parts_.end(),
-                                 [&](const Part& other) { return other.unknown == unknown.index; });
-        if (part == parts_.end()) part = parts_.insert(part, {unknown.index, {0, 0, 0}});
+        const auto own =
+            coefficients_.begin() + static_cast<std::ptrdiff_t>(coefficient_starts_.back());
+        auto found = std::find_if(own, coefficients_.end(), [&](const Coefficient& other) {
+          return other.unknown == unknown.index;
+        });
+        if (found == coefficients_.end())
+          found = coefficients_.insert(found, {unknown.index, {0, 0, 0}});
         for (int n = 0; n < 3; ++n)
-          part->by[n] += share * unknown.sign * by_value[unknown.value][n];
+          found->by[n] += share * unknown.sign * by_value[unknown.value][n];
       });
     }
-    part_starts_.push_back(parts_.size());
+    coefficient_starts_.push_back(coefficients_.size());
     // All cells of a triangle have its coefficients.
     const Bending own = bending_at(bending, factors, cells_[cell_starts_[triangle]]);
     moduli_.push_back({own.uu, own.coupling, own.vv, own.uv});
@@ -104,8 +107,8 @@ double PlasticTriangles::squared_stress(int triangle, const Field& x,
   PlaceCurvatures xi;
   const double share = 1 + laws_[triangle].hardening;
   for (int k = 0; k < 9; ++k) xi[k] = held_(triangle, k) - share * from(triangle, k);
-  for (const Part& part : parts_of(triangle)) {
-    for (int k = 0; k < 9; ++k) xi[k] += part.by[k / 3] * x(part.unknown, k % 3);
+  for (const Coefficient& one : coefficients_of(triangle)) {
+    for (int k = 0; k < 9; ++k) xi[k] += one.by[k / 3] * x(one.unknown, k % 3);
   }
   return product_of(moduli_[triangle], xi, xi);
 }
@@ -130,8 +133,8 @@ void PlasticTriangles::add_forces(const PlasticField& plastic, Field& forces) co
     PlaceCurvatures own;
     for (int k = 0; k < 9; ++k) own[k] = areas_[triangle] * plastic(triangle, k);
     const PlaceCurvatures moments = moments_of(moduli_[triangle], own);
-    for (const Part& part : parts_of(triangle)) {
-      for (int k = 0; k < 9; ++k) forces(part.unknown, k % 3) += part.by[k / 3] * moments[k];
+    for (const Coefficient& one : coefficients_of(triangle)) {
+      for (int k = 0; k < 9; ++k) forces(one.unknown, k % 3) += one.by[k / 3] * moments[k];
     }
   }
 }
@@ -140,9 +143,9 @@ PlaceRows PlasticTriangles::rows_of(const std::vector<int>& triangles) const {
   PlaceRows rows;
   for (const int triangle : triangles) {
     PlaceRows::Pattern pattern{moduli_[triangle], laws_[triangle], areas_[triangle], {}};
-    for (const Part& part : parts_of(triangle)) {
-      rows.unknowns.push_back(part.unknown);
-      pattern.by.push_back(part.by);
+    for (const Coefficient& one : coefficients_of(triangle)) {
+      rows.unknowns.push_back(one.unknown);
+      pattern.by.push_back(one.by);
     }
     rows.pattern_of.push_back(static_cast<int>(rows.patterns.size()));
     rows.patterns.push_back(std::move(pattern));
@@ -154,7 +157,7 @@ PlaceRows PlasticTriangles::rows_of(const std::vector<int>& triangles) const {
 }
 
 std::size_t PlasticTriangles::memory() const {
-  return parts_.size() * sizeof(Part) + cells_.size() * sizeof(int) +
+  return coefficients_.size() * sizeof(Coefficient) + cells_.size() * sizeof(int) +
          areas_.size() * (2 * sizeof(int) + sizeof(double) + sizeof(Moduli<double>) +
                           sizeof(PlasticLaw) + sizeof(std::size_t) + 9 * sizeof(double));
 }

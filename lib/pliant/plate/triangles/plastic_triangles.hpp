@@ -48,15 +48,15 @@ class PlasticTriangles {
 
  private:
   // How the curvature of a triangle depends on an unknown.
-  struct Part {
+  struct Coefficient {
     int unknown;
     Curvature by;
   };
 
   int count() const { return static_cast<int>(areas_.size()); }
-  std::span<const Part> parts_of(int triangle) const {
-    const std::size_t first = part_starts_[triangle];
-    return std::span(parts_).subspan(first, part_starts_[triangle + 1] - first);
+  std::span<const Coefficient> coefficients_of(int triangle) const {
+    const std::size_t first = coefficient_starts_[triangle];
+    return std::span(coefficients_).subspan(first, coefficient_starts_[triangle + 1] - first);
   }
   double squared_stress(int triangle, const Field& x, const PlasticField& from) const;
 
@@ -64,8 +64,8 @@ class PlasticTriangles {
   std::vector<Moduli<double>> moduli_;    // [b length^4/uv^4]
   std::vector<PlasticLaw> laws_;          // one, or one for each
   std::vector<int> cell_starts_, cells_;  // of each triangle
-  std::vector<std::size_t> part_starts_ = {0};
-  std::vector<Part> parts_;
+  std::vector<std::size_t> coefficient_starts_ = {0};
+  std::vector<Coefficient> coefficients_;
   PlasticField held_;  // by what is held [1/length]
 };
 

@@ -24,9 +24,10 @@ bool selects(std::span<const int> selectors, std::size_t k) {
 }
 
 // The box in world space of a box in object space, a little larger.
-std::pair<Vector3d, Vector3d> placed_box(const Transform& transform, const PointTree::Part& part) {
-  const Vector3d middle = to_world(transform, Vector3d(0.5 * (part.low + part.high)));
-  const Vector3d half = 0.5 * (part.high - part.low);
+std::pair<Vector3d, Vector3d> placed_box(const Transform& transform,
+                                         const PointTree::Cluster& cluster) {
+  const Vector3d middle = to_world(transform, Vector3d(0.5 * (cluster.low + cluster.high)));
+  const Vector3d half = 0.5 * (cluster.high - cluster.low);
   Vector3d reach;
   for (int k = 0; k < 3; ++k) {
     reach[k] = std::abs(transform.linear(k, 0)) * half[0] +
@@ -46,20 +47,20 @@ void visit_near(const TriangleSurface& surface, const PointTree& tree, const Tra
   const PlacedNodes nodes(surface.rest, transform);
   const bool is_custom = std::holds_alternative<SampledCustomForce>(force.kind);
   std::vector<int> open;
-  if (!tree.parts().empty()) open.push_back(0);
+  if (!tree.clusters().empty()) open.push_back(0);
   while (!open.empty()) {
-    const PointTree::Part& part = tree.parts()[open.back()];
+    const PointTree::Cluster& cluster = tree.clusters()[open.back()];
     open.pop_back();
     if (!is_custom) {
-      const auto [low, high] = placed_box(transform, part);
+      const auto [low, high] = placed_box(transform, cluster);
       if (!(least_distance(force.kind, low, high) < radius)) continue;
     }
-    if (!part.is_leaf()) {
-      open.insert(open.end(), {part.child + 1, part.child});
+    if (!cluster.is_leaf()) {
+      open.insert(open.end(), {cluster.child + 1, cluster.child});
       continue;
     }
-    const std::span<const int> rows(tree.rows().data() + part.first,
-                                    static_cast<std::size_t>(part.count));
+    const std::span<const int> rows(tree.rows().data() + cluster.first,
+                                    static_cast<std::size_t>(cluster.count));
     if (!f(rows, distances(force.kind, nodes.batch(rows)))) return;
   }
 }

@@ -161,7 +161,7 @@ std::string_view text_of(const aiString& text) {
   return {text.data, strnlen(text.data, sizeof text.data)};
 }
 
-void write_part(MessageWriter& writer, const aiScene& scene, const aiMesh& mesh, int uv_set) {
+void write_submesh(MessageWriter& writer, const aiScene& scene, const aiMesh& mesh, int uv_set) {
   aiString material;
   if (mesh.mMaterialIndex < scene.mNumMaterials && scene.mMaterials[mesh.mMaterialIndex])
     scene.mMaterials[mesh.mMaterialIndex]->Get(AI_MATKEY_NAME, material);
@@ -220,7 +220,7 @@ void write_scene(MessageWriter& writer, const aiScene& scene, const std::string&
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) writer.number(taken.to_file(row, column));
   writer.number(static_cast<std::uint32_t>(taken.meshes.size()));
-  for (const aiMesh* mesh : taken.meshes) write_part(writer, scene, *mesh, uv_set);
+  for (const aiMesh* mesh : taken.meshes) write_submesh(writer, scene, *mesh, uv_set);
 }
 
 }  // namespace

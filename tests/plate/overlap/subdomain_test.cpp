@@ -1,4 +1,4 @@
-#include "pliant/plate/overlap/overlap_part.hpp"
+#include "pliant/plate/overlap/subdomain.hpp"
 
 #include <algorithm>
 
@@ -23,13 +23,13 @@ bool reads(int i, int j, const Box& box) {
 
 }  // namespace
 
-TEST_CASE("a part knows the nodes that its clamped sides cut off", "[plate][cover]") {
+TEST_CASE("a subdomain knows the nodes that its clamped sides cut off", "[plate][cover]") {
   for (const UnionPlate& plate : union_plates(41)) {
     CAPTURE(plate.name);
     const Outline outline = plate.outline();
     const Grid& grid = plate.grid;
     for (const Box& box : cover_by_rectangles(outline)) {
-      const OverlapPart part = overlap_part(outline, box);
+      const Subdomain subdomain = subdomain_of(outline, box);
       std::size_t facing = 0;
       for (int j = 1; j + 1 < grid.rows; ++j) {
         for (int i = 1; i + 1 < grid.columns; ++i) {
@@ -41,19 +41,19 @@ TEST_CASE("a part knows the nodes that its clamped sides cut off", "[plate][cove
           const long node = grid.node(i, j);
           if (box.contains(i, j) && along_u + along_v > 0) {
             ++facing;
-            CHECK(std::count_if(part.facing.begin(), part.facing.end(),
+            CHECK(std::count_if(subdomain.facing.begin(), subdomain.facing.end(),
                                 [&](const RowBlocks::Edge& edge) {
                                   return edge.node == node && edge.along_u == along_u &&
                                          edge.along_v == along_v;
                                 }) == 1);
           }
-          const auto times = std::count(part.around.begin(), part.around.end(), node);
+          const auto times = std::count(subdomain.around.begin(), subdomain.around.end(), node);
           if (box.contains(i, j)) CHECK(times == 0);
           if (!box.contains(i, j) && reads(i, j, box)) CHECK(times == 1);
         }
       }
-      CHECK(part.facing.size() == facing);
-      CHECK(std::all_of(part.around.begin(), part.around.end(), [&](long node) {
+      CHECK(subdomain.facing.size() == facing);
+      CHECK(std::all_of(subdomain.around.begin(), subdomain.around.end(), [&](long node) {
         return outline.holds(static_cast<int>(node) % grid.columns,
                              static_cast<int>(node) / grid.columns);
       }));

@@ -1,12 +1,12 @@
-#include "pliant/plate/overlap/overlap_part.hpp"
+#include "pliant/plate/overlap/subdomain.hpp"
 
 #include <algorithm>
 
 namespace pliant {
 
-OverlapPart overlap_part(const Outline& outline, const Box& box) {
+Subdomain subdomain_of(const Outline& outline, const Box& box) {
   const Grid& grid = outline.grid();
-  OverlapPart part{box, {}, {}};
+  Subdomain subdomain{box, {}, {}};
   for (int j = box.j0; j <= box.j1; ++j) {
     const bool is_end = j == box.j0 || j == box.j1;
     for (int i = box.i0; i <= box.i1; ++i) {
@@ -16,7 +16,7 @@ OverlapPart overlap_part(const Outline& outline, const Box& box) {
           (i == box.i0 && outline.holds(i - 1, j)) + (i == box.i1 && outline.holds(i + 1, j));
       const int along_v =
           (j == box.j0 && outline.holds(i, j - 1)) + (j == box.j1 && outline.holds(i, j + 1));
-      if (along_u + along_v > 0) part.facing.push_back({grid.node(i, j), along_u, along_v});
+      if (along_u + along_v > 0) subdomain.facing.push_back({grid.node(i, j), along_u, along_v});
     }
   }
   for (int j = std::max(1, box.j0 - 2); j <= std::min(grid.rows - 2, box.j1 + 2); ++j) {
@@ -24,11 +24,11 @@ OverlapPart overlap_part(const Outline& outline, const Box& box) {
       if (box.contains(i, j)) {
         i = box.i1;
       } else if (outline.holds(i, j)) {
-        part.around.push_back(grid.node(i, j));
+        subdomain.around.push_back(grid.node(i, j));
       }
     }
   }
-  return part;
+  return subdomain;
 }
 
 std::size_t move_independent_back(std::vector<Box>& cover) {
