@@ -28,9 +28,9 @@ constexpr std::string_view name_begin = "pliant-view-";
 // The file that is locked, in the folder.
 std::string lock_of(const std::string& folder) { return folder + "/kept"; }
 
-// Opens the file to be locked, and waits until the folder is held; -1: it is gone. Some file
+// Opens the file to be locked, and waits until it locks the folder; -1: it is gone. Some file
 // systems have no locks.
-int held(const std::string& folder, int more_flags = 0) {
+int locked(const std::string& folder, int more_flags = 0) {
   const int lock =
       open(lock_of(folder).c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | more_flags, 0600);
   struct stat facts = {};
@@ -42,18 +42,18 @@ int held(const std::string& folder, int more_flags = 0) {
   return -1;
 }
 
-struct HeldFolder {
+struct LockedFolder {
   std::string path;
   int lock;
 };
 
 // Null and errno if there can be none.
-std::optional<HeldFolder> new_folder(const std::string& place) {
+std::optional<LockedFolder> new_folder(const std::string& place) {
   constexpr int rounds = 10;  // another keeper may take it for one that is left over
   for (int round = 0; round < rounds; ++round) {
     std::string name = (fs::path(place) / name_begin).string() + "XXXXXX";
     if (mkdtemp(name.data()) == nullptr) return {};
-    if (const int lock = held(name, O_CREAT); lock >= 0) return HeldFolder{name, lock};
+    if (const int lock = locked(name, O_CREAT); lock >= 0) return LockedFolder{name, lock};
     if (errno != ENOENT) {
       const int error = errno;
       rmdir(name.c_str());
@@ -107,7 +107,7 @@ std::string read_all(int descriptor) {
 
 }  // namespace
 
-bool hold_folder(const std::string& folder) { return held(folder) >= 0; }
+bool hold_folder(const std::string& folder) { return locked(folder) >= 0; }
 
 int keep_folder(const std::string& place) {
   const auto folder = new_folder(place);

@@ -9,10 +9,10 @@
 #include "pliant/core/elementary.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/exchange/blender_words.hpp"
+#include "pliant/exchange/convert.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/fit.hpp"
 #include "pliant/exchange/formats.hpp"
-#include "pliant/exchange/hold.hpp"
 #include "pliant/exchange/segments.hpp"
 #include "pliant/files/file_object.hpp"
 #include "pliant/files/json/json_reader.hpp"
@@ -470,17 +470,17 @@ class BlenderReader : private JsonReader {
     const Abilities abilities{.has_step_next = true,
                               .has_left_values = true,
                               .has_easing = [](const Segment&) { return true; }};
-    auto held = hold(*std::move(segments), abilities, 0, {}, reading_.should_stop);
-    if (!held && held.error().code == ErrorCode::Interrupted) {
+    auto converted = convert(*std::move(segments), abilities, 0, {}, reading_.should_stop);
+    if (!converted && converted.error().code == ErrorCode::Interrupted) {
       end();
       return false;
     }
-    if (!held) {
-      refuse("cycles", held.error().message);
+    if (!converted) {
+      refuse("cycles", converted.error().message);
       return false;
     }
-    for (Loss& loss : held->losses) lose(std::move(loss.message), loss.is_exact);
-    keys.keys = keys_of(held->segments).keys;
+    for (Loss& loss : converted->losses) lose(std::move(loss.message), loss.is_exact);
+    keys.keys = keys_of(converted->segments).keys;
     keys.before = without_copies(*without, plain, true);
     keys.after = without_copies(*without, plain, false);
     keys.overshoot = Overshoot::Limit;

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "pliant/exchange/blender_words.hpp"
+#include "pliant/exchange/converted_channel.hpp"
 #include "pliant/exchange/formats.hpp"
-#include "pliant/exchange/held_channel.hpp"
 
 namespace pliant::exchange {
 namespace {
@@ -151,10 +151,10 @@ Result<CurveText> write_blender(const std::vector<ChannelCurve>& curves,
       writing.fps);
   bool is_first = true;
   for (const ChannelCurve& curve : curves) {
-    const auto channel = held_channel(curve, blender_abilities(), writing, result.losses);
+    const auto channel = converted_channel(curve, blender_abilities(), writing, result.losses);
     if (!channel) return fail(channel.error());
     const double factor = curve.unit == CurveUnit::Degrees ? std::numbers::pi / 180 : 1;
-    for (const HeldComponent& part : channel->components) {
+    for (const ConvertedComponent& part : channel->components) {
       const std::string index = part.component < 0 ? "null" : fmt::format("{}", part.component);
       fmt::format_to(std::back_inserter(text),
                      "{}\n    {{\n      \"owner\": {}, \"data_path\": {}, \"index\": {}, \"unit\": "

@@ -11,10 +11,10 @@
 
 #include "pliant/core/base64.hpp"
 #include "pliant/core/expects.hpp"
+#include "pliant/exchange/converted_channel.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/fit.hpp"
 #include "pliant/exchange/formats.hpp"
-#include "pliant/exchange/held_channel.hpp"
 #include "pliant/exchange/rotations.hpp"
 #include "pliant/exchange/single.hpp"
 #include "pliant/files/gltf/glb.hpp"
@@ -73,9 +73,9 @@ class SegmentCursor {
   std::size_t next_ = 0;
 };
 
-std::vector<double> frames_of_all(const HeldChannel& channel) {
+std::vector<double> frames_of_all(const ConvertedChannel& channel) {
   std::vector<double> frames;
-  for (const HeldComponent& part : channel.components)
+  for (const ConvertedComponent& part : channel.components)
     frames.insert(frames.end(), part.segments.frames.begin(), part.segments.frames.end());
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
@@ -89,7 +89,7 @@ double value_at_or_before(const Segments& segments, double frame) {
 }
 
 /// Steps, whose frames may differ between the components.
-SampledKeys sampled_steps(const HeldChannel& channel) {
+SampledKeys sampled_steps(const ConvertedChannel& channel) {
   SampledKeys result{.interpolation = "STEP"};
   for (const double frame : frames_of_all(channel)) {
     SampledKey key{.frame = frame};
@@ -100,7 +100,7 @@ SampledKeys sampled_steps(const HeldChannel& channel) {
   return result;
 }
 
-SampledKeys sampled_segments(const HeldChannel& channel) {
+SampledKeys sampled_segments(const ConvertedChannel& channel) {
   SampledKeys result;
   const std::vector<double> frames = frames_of_all(channel);
   for (const double frame : frames) result.keys.push_back({.frame = frame});
@@ -122,9 +122,9 @@ SampledKeys sampled_segments(const HeldChannel& channel) {
   return result;
 }
 
-bool all_step(const HeldChannel& channel) {
+bool all_step(const ConvertedChannel& channel) {
   return std::all_of(channel.components.begin(), channel.components.end(),
-                     [](const HeldComponent& part) { return steps_only(part.segments); });
+                     [](const ConvertedComponent& part) { return steps_only(part.segments); });
 }
 
 Abilities gltf_abilities(bool has_steps) {
@@ -176,13 +176,13 @@ class GltfCurveWriter {
   Result<SampledKeys> sample(const ChannelCurve& curve) {
     // As steps first: nothing is lost if there are no others.
     std::vector<CurveLoss> losses;
-    auto channel = held_channel(curve, gltf_abilities(true), writing_, losses);
+    auto channel = converted_channel(curve, gltf_abilities(true), writing_, losses);
     if (!channel) return fail(channel.error());
     const bool is_rotation = path_of_attribute(channel->attribute) == "rotation";
     const bool are_steps = all_step(*channel);
     if (!are_steps) {
       losses.clear();
-      channel = held_channel(curve, gltf_abilities(false), writing_, losses);
+      channel = converted_channel(curve, gltf_abilities(false), writing_, losses);
       if (!channel) return fail(channel.error());
     }
     for (CurveLoss& loss : losses) result_.losses.push_back(std::move(loss));
@@ -190,7 +190,7 @@ class GltfCurveWriter {
     return are_steps ? sampled_steps(*channel) : sampled_segments(*channel);
   }
 
-  Result<SampledKeys> sampled_rotation(const ChannelCurve& curve, const HeldChannel& channel,
+  Result<SampledKeys> sampled_rotation(const ChannelCurve& curve, const ConvertedChannel& channel,
                                        bool are_steps) {
     const auto turn = [&](const Value<3>& degrees, const Quaternion& beside) {
       return quaternion_near(degrees, curve.rotate_order, beside);
@@ -219,13 +219,13 @@ class GltfCurveWriter {
   }
 
   template <class Turn>
-  Result<SampledKeys> fitted_rotation(const ChannelCurve& curve, const HeldChannel& channel,
+  Result<SampledKeys> fitted_rotation(const ChannelCurve& curve, const ConvertedChannel& channel,
                                       const Turn& turn) {
     SampledKeys result{.interpolation = "CUBICSPLINE", .width = 4};
     std::vector<Curve<1>> parts;
     double tolerance = least_rotation_tolerance;
     double first = std::numeric_limits<double>::infinity(), last = -first;
-    for (const HeldComponent& part : channel.components) {
+    for (const ConvertedComponent& part : channel.components) {
       auto made = Curve<1>::make(exchange::keys_of(part.segments));
       PLIANT_EXPECTS(made.has_value());  // segments of a curve
       tolerance = std::max(tolerance, tolerance_of(*made, writing_));

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/exchange/convert.hpp"
 #include "pliant/exchange/curve_names.hpp"
-#include "pliant/exchange/hold.hpp"
 
 namespace pliant {
 namespace exchange {
@@ -158,7 +158,7 @@ class Joiner {
   Result<JoinedCurve> join() {
     for (std::size_t c = 0; c < 3; ++c) {
       if (!components_[c]) continue;
-      if (auto held = hold_component(c); !held) return fail(held.error());
+      if (auto converted = convert_component(c); !converted) return fail(converted.error());
     }
     std::sort(frames_.begin(), frames_.end());
     frames_.erase(std::unique(frames_.begin(), frames_.end()), frames_.end());
@@ -181,20 +181,22 @@ class Joiner {
   }
 
  private:
-  Result<void> hold_component(std::size_t c) {
+  Result<void> convert_component(std::size_t c) {
     const auto curve = Curve<1>::make(*components_[c], should_stop_);
     if (!curve) return fail(error_of(curve.error(), ""));
     const auto& keys = curve->keys().keys;
     const ValueRange<1> range = curve->range(keys.front().frame, keys.back().frame);
     const Abilities abilities{
         .has_left_values = true, .has_long_arms = false, .has_counted_copies = true};
-    auto held = hold(segments_of(*curve), abilities, tolerance_ * (range.high[0] - range.low[0]),
-                     {keys.front().frame, keys.back().frame}, should_stop_);
-    if (!held) return fail(held.error());
-    for (Loss& loss : held->losses)
+    auto converted =
+        convert(segments_of(*curve), abilities, tolerance_ * (range.high[0] - range.low[0]),
+                {keys.front().frame, keys.back().frame}, should_stop_);
+    if (!converted) return fail(converted.error());
+    for (Loss& loss : converted->losses)
       result_.losses.push_back(fmt::format(".{}: {}", "xyz"[c], loss.message));
-    frames_.insert(frames_.end(), held->segments.frames.begin(), held->segments.frames.end());
-    segments_[c] = std::move(held->segments);
+    frames_.insert(frames_.end(), converted->segments.frames.begin(),
+                   converted->segments.frames.end());
+    segments_[c] = std::move(converted->segments);
     return {};
   }
 

@@ -7,9 +7,9 @@
 
 #include <fmt/format.h>
 
+#include "pliant/exchange/converted_channel.hpp"
 #include "pliant/exchange/curve_names.hpp"
 #include "pliant/exchange/formats.hpp"
-#include "pliant/exchange/held_channel.hpp"
 #include "pliant/exchange/maya_units.hpp"
 
 namespace pliant::exchange {
@@ -155,9 +155,9 @@ Result<CurveText> write_maya(const std::vector<ChannelCurve>& curves, const Curv
       "startTime {};\nendTime {};\n",
       *unit, writing.first, writing.last);
   for (const ChannelCurve& curve : curves) {
-    const auto channel = held_channel(curve, maya_abilities(), writing, result.losses);
+    const auto channel = converted_channel(curve, maya_abilities(), writing, result.losses);
     if (!channel) return fail(channel.error());
-    for (const HeldComponent& part : channel->components) {
+    for (const ConvertedComponent& part : channel->components) {
       const std::string& attribute = channel->attribute;
       if (part.component < 0) {
         fmt::format_to(std::back_inserter(text), "anim {} {} {} 0 0 0;\n", attribute, attribute,

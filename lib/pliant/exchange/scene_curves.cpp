@@ -191,9 +191,9 @@ class Placer {
       if (!names_->has_thing(thing) || attribute.empty())
         return unknown_channel(fmt::format("--map {}: ", sources.text), path, *scene_);
       if (const NamedChannel* const channel = names_->channel(path)) {
-        if (const auto* held = std::get_if<const Channel<3>*>(&channel->channel)) {
-          constant = (*held)->at(scene_->start);
-          if ((*held)->is_animated()) own = (*held)->curve().keys();
+        if (const auto* vector = std::get_if<const Channel<3>*>(&channel->channel)) {
+          constant = (*vector)->at(scene_->start);
+          if ((*vector)->is_animated()) own = (*vector)->curve().keys();
           is_vector = true;
         } else if (is_vector && !is_tangent(attribute)) {
           return broken(sources.text, "this channel is a number, not a vector");

@@ -17,26 +17,26 @@
 namespace pliant {
 namespace {
 
-// The cells of a grid that some boxes hold. Those of a closed direction are counted round.
-class HeldCells {
+// The cells of a grid that some boxes cover. Those of a closed direction are counted round.
+class CoveredCells {
  public:
-  explicit HeldCells(const Grid& grid)
+  explicit CoveredCells(const Grid& grid)
       : grid_(grid),
         columns_(grid.columns - (grid.is_closed_u ? 0 : 1)),
         rows_(grid.rows - (grid.is_closed_v ? 0 : 1)),
-        is_held_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+        is_covered_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
 
   void add(const Box& box) {
-    each_cell(box, [&](int i, int j) { is_held_[place(i, j)] = true; });
+    each_cell(box, [&](int i, int j) { is_covered_[place(i, j)] = true; });
   }
 
-  // Calls f(node, other) for each edge between a cell that is held and one that is not.
+  // Calls f(node, other) for each edge between a cell that is covered and one that is not.
   template <class F>
   void each_rim_edge(const F& f) const {
     for (int j = 0; j < grid_.rows; ++j) {
       for (int i = 0; i < grid_.columns; ++i) {
-        if (i < columns_ && holds(i, j - 1) != holds(i, j)) f(node(i, j), node(i + 1, j));
-        if (j < rows_ && holds(i - 1, j) != holds(i, j)) f(node(i, j), node(i, j + 1));
+        if (i < columns_ && covers(i, j - 1) != covers(i, j)) f(node(i, j), node(i + 1, j));
+        if (j < rows_ && covers(i - 1, j) != covers(i, j)) f(node(i, j), node(i, j + 1));
       }
     }
   }
@@ -68,10 +68,10 @@ class HeldCells {
     }
   }
 
-  bool holds(int i, int j) const {
+  bool covers(int i, int j) const {
     const bool is_beyond_u = !grid_.is_closed_u && (i < 0 || i >= columns_);
     const bool is_beyond_v = !grid_.is_closed_v && (j < 0 || j >= rows_);
-    return !is_beyond_u && !is_beyond_v && is_held_[place(i, j)];
+    return !is_beyond_u && !is_beyond_v && is_covered_[place(i, j)];
   }
   std::size_t place(int i, int j) const {
     return static_cast<std::size_t>((j + rows_) % rows_) * static_cast<std::size_t>(columns_) +
@@ -81,7 +81,7 @@ class HeldCells {
 
   const Grid& grid_;
   int columns_, rows_;  // of cells
-  std::vector<bool> is_held_;
+  std::vector<bool> is_covered_;
 };
 
 // The vertex of each node; -1: none.
@@ -190,7 +190,7 @@ class LinesOnMesh::Mapping {
   }
 
   SurfaceLines around(std::span<const Box> boxes) const {
-    HeldCells cells(*shape_.grid);
+    CoveredCells cells(*shape_.grid);
     SurfaceLines lines;
     std::map<int, int> points;
     const auto point = [&](int node) {

@@ -29,7 +29,7 @@ namespace pliant {
 namespace {
 
 // A value that holds from a frame on.
-struct Held {
+struct RecordedValue {
   int frame = 0;
   Value<3> value = {};  // of a single number the first
 };
@@ -43,8 +43,8 @@ struct Input {
   Of channel;
   bool changes = false;  // by a curve of the author, which may break a rule at any frame
   bool is_transform = false;
-  const Force* noise = nullptr;  // the noise whose rate it is
-  std::vector<Held> held = {};   // recorded, in the order of frames
+  const Force* noise = nullptr;              // the noise whose rate it is
+  std::vector<RecordedValue> recorded = {};  // in the order of frames
 };
 
 template <int D>
@@ -124,9 +124,9 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
 // the run's first one on, the one before it too, since inertia reads it.
 template <int D>
 std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
-                                  std::span<const Held> held) {
+                                  std::span<const RecordedValue> recorded) {
   std::vector<Key<D>> keys;
-  const int first = held.front().frame;
+  const int first = recorded.front().frame;
   if (authored.is_animated()) {
     for (int frame = start - 1; frame < first; ++frame) {
       keys.push_back(step_key<D>(frame, authored.at(frame)));
@@ -134,7 +134,7 @@ std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
   } else if (first > start) {
     keys.push_back(step_key<D>(start, authored.at(start)));
   }
-  for (const Held& one : held) {
+  for (const RecordedValue& one : recorded) {
     keys.push_back(step_key<D>(one.frame, value_of<D>(std::span(one.value))));
   }
   auto curve = Curve<D>::make({.keys = std::move(keys)});
@@ -241,10 +241,10 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
   is_checked_ = false;
   if (!records_) return {};
   const int from = input.is_transform ? frame_ + 1 : frame_;
-  if (!input.held.empty() && input.held.back().frame == from) input.held.pop_back();
-  Held& held = input.held.emplace_back();
-  held.frame = from;
-  std::copy(value.begin(), value.end(), held.value.begin());
+  if (!input.recorded.empty() && input.recorded.back().frame == from) input.recorded.pop_back();
+  RecordedValue& recorded = input.recorded.emplace_back();
+  recorded.frame = from;
+  std::copy(value.begin(), value.end(), recorded.value.begin());
   return {};
 }
 
@@ -358,10 +358,10 @@ Result<Scene> LiveSimulation::Run::performance() const {
   scene.end = frame_;
   const std::vector<Input> authored = inputs_that_can_be_set(scene);
   for (std::size_t k = 0; k < authored.size(); ++k) {
-    const std::vector<Held>& held = inputs_[k].held;
-    if (held.empty()) continue;
+    const std::vector<RecordedValue>& recorded = inputs_[k].recorded;
+    if (recorded.empty()) continue;
     const auto replace = [&]<int D>(const Channel<D>& of, auto& channel) {
-      auto curve = performed<D>(of, first_, held);
+      auto curve = performed<D>(of, first_, recorded);
       if (!curve) return false;
       channel = *std::move(curve);
       return true;

@@ -32,8 +32,8 @@ struct Loss {
   bool is_exact = false;  ///< the values of the curve are the same
 };
 
-/// A curve as a format can hold it.
-struct Held {
+/// A curve that a format can hold.
+struct ConvertedCurve {
   Segments segments;
   std::vector<Loss> losses;  ///< one for each kind
 };
@@ -50,7 +50,7 @@ struct WantedFrames {
 /// become keys, endless ones as far as frames are wanted. Errors: numbers that no other program
 /// computes with: frames beyond 1e7, keys closer than 1e-6 frames, values beyond 1e30; more than
 /// `most_segments`. Interrupted.
-Result<Held> hold(Segments segments, const Abilities& abilities, double tolerance,
-                  WantedFrames wanted, const StopRequest& should_stop = {});
+Result<ConvertedCurve> convert(Segments segments, const Abilities& abilities, double tolerance,
+                               WantedFrames wanted, const StopRequest& should_stop = {});
 
 }  // namespace pliant::exchange

@@ -1,4 +1,4 @@
-#include "pliant/exchange/hold.hpp"
+#include "pliant/exchange/convert.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -74,9 +74,9 @@ class LossLog {
   std::vector<Loss> sides_;
 };
 
-constexpr double largest_held_frame = 1e7;
-constexpr double largest_held_value = 1e30;
-constexpr double shortest_held_segment = 1e-6;
+constexpr double largest_written_frame = 1e7;
+constexpr double largest_written_value = 1e30;
+constexpr double shortest_written_segment = 1e-6;
 
 std::string_view name_of(Ease ease) {
   constexpr std::string_view names[] = {"sine", "quad", "cubic", "quart",  "quint",
@@ -98,58 +98,58 @@ std::optional<Error> beyond_bounds(const Segments& segments) {
     return Error{.code = ErrorCode::InvalidInput, .message = std::move(message)};
   };
   for (std::size_t k = 0; k < segments.frames.size(); ++k) {
-    if (!(std::fabs(segments.frames[k]) <= largest_held_frame)) {
+    if (!(std::fabs(segments.frames[k]) <= largest_written_frame)) {
       return error(
           fmt::format("key {} is too far away: frames of other programs reach from {} to {}",
-                      segments.frames[k], -largest_held_frame, largest_held_frame));
+                      segments.frames[k], -largest_written_frame, largest_written_frame));
     }
-    if (!(std::fabs(segments.values[k]) <= largest_held_value)) {
+    if (!(std::fabs(segments.values[k]) <= largest_written_value)) {
       return error(fmt::format("the value {} of key {} is too large: its size must not exceed {}",
-                               segments.values[k], segments.frames[k], largest_held_value));
+                               segments.values[k], segments.frames[k], largest_written_value));
     }
   }
   for (const Segment& segment : segments.segments) {
-    if (!(segment.length() >= shortest_held_segment)) {
+    if (!(segment.length() >= shortest_written_segment)) {
       return error(fmt::format("key {} and key {} are too close: other programs need {} frames",
-                               segment.start, segment.end, shortest_held_segment));
+                               segment.start, segment.end, shortest_written_segment));
     }
     for (const double number : {segment.from, segment.to, segment.out.value, segment.in.value}) {
-      if (std::fabs(number) <= largest_held_value) continue;
+      if (std::fabs(number) <= largest_written_value) continue;
       return error(
           fmt::format("the segment of key {} has the value {}: its size must not exceed {}",
-                      segment.start, number, largest_held_value));
+                      segment.start, number, largest_written_value));
     }
   }
   return {};
 }
 
-class Holder {
+class Converter {
  public:
-  Holder(Segments segments, const Abilities& abilities, double tolerance, WantedFrames wanted,
-         const StopRequest& should_stop)
+  Converter(Segments segments, const Abilities& abilities, double tolerance, WantedFrames wanted,
+            const StopRequest& should_stop)
       : segments_(std::move(segments)),
         abilities_(abilities),
         tolerance_(tolerance),
         wanted_(wanted),
         should_stop_(should_stop) {}
 
-  Result<Held> hold() {
+  Result<ConvertedCurve> convert() {
     for (const Segment& segment : segments_.segments) author_frames_.push_back(segment.start);
     if (auto error = beyond_bounds(segments_)) return fail(*std::move(error));
-    if (auto held = hold_copies(); !held) return fail(held.error());
-    hold_lines();
-    if (auto held = hold_shapes(); !held) return fail(held.error());
-    hold_jumps();
-    if (auto held = hold_arms(); !held) return fail(held.error());
+    if (auto converted = convert_copies(); !converted) return fail(converted.error());
+    convert_lines();
+    if (auto converted = convert_shapes(); !converted) return fail(converted.error());
+    convert_jumps();
+    if (auto converted = convert_arms(); !converted) return fail(converted.error());
     if (auto error = beyond_bounds(segments_)) return fail(*std::move(error));
-    return Held{std::move(segments_), losses_.take()};
+    return ConvertedCurve{std::move(segments_), losses_.take()};
   }
 
  private:
   static bool has_copies(const Beyond& side) { return side.kind != Beyond::Kind::Line; }
 
   /// Whether the format shows the same copies.
-  bool holds_copies(const Beyond& side) const {
+  bool allows_copies(const Beyond& side) const {
     const double rise = segments_.values.back() - segments_.values.front();
     if (side.kind == Beyond::Kind::RepeatOffset && side.offset != rise) return false;
     if (std::isinf(side.count)) return abilities_.has_copies;
@@ -171,9 +171,9 @@ class Holder {
     return abilities_.lines_need_motion && is_before && beside.kind == Segment::Kind::Constant;
   }
 
-  Result<void> hold_copies() {
-    bool writes_before = has_copies(segments_.before) && !holds_copies(segments_.before);
-    bool writes_after = has_copies(segments_.after) && !holds_copies(segments_.after);
+  Result<void> convert_copies() {
+    bool writes_before = has_copies(segments_.before) && !allows_copies(segments_.before);
+    bool writes_after = has_copies(segments_.after) && !allows_copies(segments_.after);
     if (needs_segment(true) || writes_before) writes_after = has_copies(segments_.after);
     if (needs_segment(false) || writes_after) writes_before = has_copies(segments_.before);
     if (!writes_before && !writes_after) return {};
@@ -203,7 +203,7 @@ class Holder {
     return {};
   }
 
-  void hold_lines() {
+  void convert_lines() {
     for (const bool is_before : {true, false}) {
       if (!needs_segment(is_before)) continue;
       Beyond& side = is_before ? segments_.before : segments_.after;
@@ -267,7 +267,7 @@ class Holder {
                     : cut(segment, segment.end - gap).left;
   }
 
-  void hold_jumps() {
+  void convert_jumps() {
     Segments result;
     result.before = segments_.before;
     result.after = segments_.after;
@@ -311,10 +311,10 @@ class Holder {
     segments_ = std::move(result);
   }
 
-  /// Replaces each segment by the parts that `parts_of` makes of it. Errors: they are too many;
+  /// Replaces each segment by those that `divided` makes of it. Errors: they are too many;
   /// Interrupted.
-  template <class PartsOf>
-  Result<void> divide(const PartsOf& parts_of) {
+  template <class Divided>
+  Result<void> divide(const Divided& divided) {
     Segments result;
     result.before = segments_.before;
     result.after = segments_.after;
@@ -322,7 +322,7 @@ class Holder {
     result.values.push_back(segments_.values[0]);
     for (std::size_t k = 0; k < segments_.segments.size(); ++k) {
       if (is_stopped(should_stop_)) return interrupted();
-      for (const Segment& part : parts_of(segments_.segments[k], k)) {
+      for (const Segment& part : divided(segments_.segments[k], k)) {
         result.segments.push_back(part);
         result.frames.push_back(part.end);
         result.values.push_back(part.to);
@@ -342,7 +342,7 @@ class Holder {
     return segment;
   }
 
-  Result<void> hold_shapes() {
+  Result<void> convert_shapes() {
     return divide([this](const Segment& segment, std::size_t k) -> std::vector<Segment> {
       if (segment.kind == Segment::Kind::Bezier && !segment.is_cubic_in_time &&
           !abilities_.has_long_arms) {
@@ -356,7 +356,7 @@ class Holder {
     });
   }
 
-  Result<void> hold_arms() {
+  Result<void> convert_arms() {
     return divide([this](const Segment& segment, std::size_t) -> std::vector<Segment> {
       if (segment.kind != Segment::Kind::Bezier) return {segment};
       std::vector<Segment> parts = with_short_arms(segment);
@@ -480,7 +480,7 @@ class Holder {
     if (abilities_.has_bold_arms || (segment.out.frames <= most && segment.in.frames <= most))
       return {segment};
     const Cut parts = cut_where_slowest(segment);
-    const double least = std::max(1e-5 * segment.length(), 4 * shortest_held_segment);
+    const double least = std::max(1e-5 * segment.length(), 4 * shortest_written_segment);
     if (parts.left.length() > least && parts.right.length() > least)
       return {parts.left, parts.right};
     // Almost at an end: as Blender itself does.
@@ -569,11 +569,12 @@ class Holder {
 
 }  // namespace
 
-Result<Held> hold(Segments segments, const Abilities& abilities, double tolerance,
-                  WantedFrames wanted, const StopRequest& should_stop) {
-  auto held = Holder(std::move(segments), abilities, tolerance, wanted, should_stop).hold();
-  if (held && is_stopped(should_stop)) return interrupted();
-  return held;
+Result<ConvertedCurve> convert(Segments segments, const Abilities& abilities, double tolerance,
+                               WantedFrames wanted, const StopRequest& should_stop) {
+  auto converted =
+      Converter(std::move(segments), abilities, tolerance, wanted, should_stop).convert();
+  if (converted && is_stopped(should_stop)) return interrupted();
+  return converted;
 }
 
 }  // namespace pliant::exchange

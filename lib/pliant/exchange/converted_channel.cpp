@@ -1,4 +1,4 @@
-#include "pliant/exchange/held_channel.hpp"
+#include "pliant/exchange/converted_channel.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -17,21 +17,23 @@ double tolerance_of(const Curve<1>& curve, const CurveWriting& writing) {
   return writing.tolerance * (range.high[0] - range.low[0]);
 }
 
-Result<HeldChannel> held_channel(const ChannelCurve& curve, const Abilities& abilities,
-                                 const CurveWriting& writing, std::vector<CurveLoss>& losses) {
+Result<ConvertedChannel> converted_channel(const ChannelCurve& curve, const Abilities& abilities,
+                                           const CurveWriting& writing,
+                                           std::vector<CurveLoss>& losses) {
   const auto [thing, attribute] = split_channel(curve.channel);
-  HeldChannel channel{thing, attribute, {}};
+  ConvertedChannel channel{thing, attribute, {}};
   const auto add = [&](const Curve<1>& part, int component) -> Result<void> {
     const std::string name = curve.channel + component_suffix(component);
-    auto held = hold(segments_of(part), abilities, tolerance_of(part, writing),
-                     {writing.first, writing.last}, writing.should_stop);
-    if (!held && held.error().code == ErrorCode::Interrupted) return fail(held.error());
-    if (!held) {
-      return fail(held.error().code, fmt::format("{}: {}", name, held.error().message));
+    auto converted = convert(segments_of(part), abilities, tolerance_of(part, writing),
+                             {writing.first, writing.last}, writing.should_stop);
+    if (!converted && converted.error().code == ErrorCode::Interrupted)
+      return fail(converted.error());
+    if (!converted) {
+      return fail(converted.error().code, fmt::format("{}: {}", name, converted.error().message));
     }
-    for (Loss& loss : held->losses)
+    for (Loss& loss : converted->losses)
       losses.push_back({name, std::move(loss.message), loss.is_exact});
-    channel.components.push_back({component, std::move(held->segments)});
+    channel.components.push_back({component, std::move(converted->segments)});
     return {};
   };
   if (const auto* number = std::get_if<Curve<1>>(&curve.curve)) {
