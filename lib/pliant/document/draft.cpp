@@ -47,35 +47,35 @@ Result<void> Draft::scan() {
   return {};
 }
 
-int Draft::line_of(Element element) const {
+int Draft::line_of(ElementIndex element) const {
   return SourceText::of(text_)->span_of(place(element).name).line;
 }
 
-std::vector<Element> Draft::children(Element element) const {
-  std::vector<Element> found;
+std::vector<ElementIndex> Draft::children(ElementIndex element) const {
+  std::vector<ElementIndex> found;
   const std::size_t end = markup_.after(element);
   for (std::size_t child = element + std::size_t{1}; child < end; child = markup_.after(child))
-    found.push_back(static_cast<Element>(child));
+    found.push_back(static_cast<ElementIndex>(child));
   return found;
 }
 
-std::optional<Element> Draft::first_child(Element element) const {
-  const Element next = element + 1;
+std::optional<ElementIndex> Draft::first_child(ElementIndex element) const {
+  const ElementIndex next = element + 1;
   const bool has_next = next < markup_.elements.size() && place(next).parent == element;
   return has_next ? std::optional(next) : std::nullopt;
 }
 
-std::vector<Element> Draft::children(Element element, std::string_view name) const {
-  std::vector<Element> found = children(element);
-  std::erase_if(found, [&](Element child) { return this->name(child) != name; });
+std::vector<ElementIndex> Draft::children(ElementIndex element, std::string_view name) const {
+  std::vector<ElementIndex> found = children(element);
+  std::erase_if(found, [&](ElementIndex child) { return this->name(child) != name; });
   return found;
 }
 
-const AttributePlace* Draft::attribute(Element element, std::string_view name) const {
+const AttributePlace* Draft::attribute(ElementIndex element, std::string_view name) const {
   return markup_.attribute_of(element, name, text_);
 }
 
-std::optional<std::string> Draft::value(Element element, std::string_view name) const {
+std::optional<std::string> Draft::value(ElementIndex element, std::string_view name) const {
   const AttributePlace* const given = attribute(element, name);
   if (!given) return std::nullopt;
   return xml::decoded(given->value.of(text_));
@@ -86,7 +86,7 @@ void Draft::replace(TextRange range, std::string text) {
       {.at = range.begin, .removed = std::string(range.of(text_)), .inserted = std::move(text)});
 }
 
-void Draft::set(Element element, std::string_view attribute, std::string_view value) {
+void Draft::set(ElementIndex element, std::string_view attribute, std::string_view value) {
   const auto given = markup_.attributes_of(element);
   if (const AttributePlace* const own = this->attribute(element, attribute)) {
     if (xml::decoded(own->value.of(text_)) == value) return;
@@ -109,13 +109,13 @@ void Draft::set(Element element, std::string_view attribute, std::string_view va
       fmt::format("{}{}={}{}{}", separator, attribute, quote, xml::encoded(value, quote), quote));
 }
 
-void Draft::remove_attribute(Element element, std::string_view attribute) {
+void Draft::remove_attribute(ElementIndex element, std::string_view attribute) {
   const AttributePlace* const given = this->attribute(element, attribute);
   if (!given) return;
   replace({blanks_begin(given->name.begin), given->whole().end}, "");
 }
 
-void Draft::remove(Element element) {
+void Draft::remove(ElementIndex element) {
   TextRange range = with_blanks_before(element);
   const std::uint32_t end = place(element).end;
   if (end_with_comments(end) != end) {
@@ -126,13 +126,13 @@ void Draft::remove(Element element) {
   replace(range, "");
 }
 
-void Draft::replace_element(Element element, const xml::ElementText& by) {
+void Draft::replace_element(ElementIndex element, const xml::ElementText& by) {
   const Surroundings around = inside({.parent = place(element).parent, .after = element});
   replace(place(element).whole(),
           xml::text_of(by, around.layout, around.is_inline ? "" : around.margin));
 }
 
-void Draft::set_comment(Element element, std::string_view lines) {
+void Draft::set_comment(ElementIndex element, std::string_view lines) {
   const auto margin = margin_of(element);
   const std::uint32_t begin = place(element).whole().begin;
   const std::string line_end = line_end_near(begin);
@@ -161,12 +161,12 @@ std::uint32_t Draft::blanks_begin(std::uint32_t at) const {
   return before == std::string_view::npos ? 0 : static_cast<std::uint32_t>(before + 1);
 }
 
-std::string Draft::blanks_before(Element element) const {
+std::string Draft::blanks_before(ElementIndex element) const {
   const std::uint32_t begin = place(element).whole().begin;
   return text_.substr(blanks_begin(begin), begin - blanks_begin(begin));
 }
 
-TextRange Draft::with_blanks_before(Element element) const {
+TextRange Draft::with_blanks_before(ElementIndex element) const {
   const TextRange range = place(element).whole();
   return {blanks_begin(range.begin), range.end};
 }
@@ -185,7 +185,7 @@ std::uint32_t Draft::end_with_comments(std::uint32_t end) const {
   }
 }
 
-std::optional<std::string> Draft::margin_of(Element element) const {
+std::optional<std::string> Draft::margin_of(ElementIndex element) const {
   const std::string_view before = std::string_view(text_).substr(0, place(element).whole().begin);
   const std::size_t last = before.find_last_not_of(space);
   if (last == std::string_view::npos) return std::string(before);
@@ -201,7 +201,7 @@ std::string Draft::line_end_near(std::size_t at) const {
 
 std::string Draft::indent() const {
   if (indent_) return *indent_;
-  for (Element child = 1; child < markup_.elements.size(); ++child) {
+  for (ElementIndex child = 1; child < markup_.elements.size(); ++child) {
     const auto outer = margin_of(place(child).parent);
     const auto inner = margin_of(child);
     if (outer && inner && inner->size() > outer->size() && inner->starts_with(*outer))
@@ -213,7 +213,7 @@ std::string Draft::indent() const {
 Draft::Surroundings Draft::inside(const Place& place) const {
   Surroundings result;
   const std::uint32_t begin = this->place(place.parent).whole().begin;
-  std::optional<Element> neighbour = place.after;
+  std::optional<ElementIndex> neighbour = place.after;
   if (!neighbour) neighbour = first_child(place.parent);
   if (neighbour) {
     const std::string before = blanks_before(*neighbour);
@@ -235,7 +235,7 @@ Draft::Surroundings Draft::inside(const Place& place) const {
     result.margin = neighbour ? blanks_before(*neighbour) : "";
   }
   // The quotes of the nearest attribute.
-  for (const Element near : {neighbour.value_or(place.parent), place.parent, root}) {
+  for (const ElementIndex near : {neighbour.value_or(place.parent), place.parent, root}) {
     const auto given = markup_.attributes_of(near);
     if (given.empty()) continue;
     result.layout.quote = text_[given.front().value.begin - 1];
@@ -277,7 +277,8 @@ void Draft::insert(const std::vector<std::string>& elements, const Place& place)
   insert(at, std::move(text));
 }
 
-std::string Draft::reindented(Element element, std::string_view from, std::string_view to) const {
+std::string Draft::reindented(ElementIndex element, std::string_view from,
+                              std::string_view to) const {
   return reindented(place(element).whole(), from, to);
 }
 

@@ -17,7 +17,7 @@
 namespace pliant::edit {
 
 /// The index of an element in the markup of a draft.
-using Element = std::uint32_t;
+using ElementIndex = std::uint32_t;
 
 /// The text of a scene while operations change it. Changes are noted at their places in the present
 /// text, and made all at once by `commit`, after which elements have other indices.
@@ -30,26 +30,26 @@ class Draft {
   const std::string& text() const { return text_; }
   const std::string& file() const { return file_; }
   const StopRequest& should_stop() const { return should_stop_; }
-  int line_of(Element element) const;
+  int line_of(ElementIndex element) const;
   /// The elements of the present text, as readers take them. The draft must outlive it, unchanged.
   xml::Tree tree() const { return {text_, markup_}; }
 
   // The elements of the present text.
 
-  static constexpr Element root = 0;
-  std::string_view name(Element element) const { return place(element).name.of(text_); }
-  const xml::ElementPlace& place(Element element) const { return markup_.elements[element]; }
-  std::string_view whole(Element element) const { return place(element).whole().of(text_); }
-  std::vector<Element> children(Element element) const;
-  std::optional<Element> first_child(Element element) const;
-  std::vector<Element> children(Element element, std::string_view name) const;
+  static constexpr ElementIndex root = 0;
+  std::string_view name(ElementIndex element) const { return place(element).name.of(text_); }
+  const xml::ElementPlace& place(ElementIndex element) const { return markup_.elements[element]; }
+  std::string_view whole(ElementIndex element) const { return place(element).whole().of(text_); }
+  std::vector<ElementIndex> children(ElementIndex element) const;
+  std::optional<ElementIndex> first_child(ElementIndex element) const;
+  std::vector<ElementIndex> children(ElementIndex element, std::string_view name) const;
   /// The place of an attribute; null if the element does not have it.
-  const xml::AttributePlace* attribute(Element element, std::string_view name) const;
-  std::span<const xml::AttributePlace> attributes(Element element) const {
+  const xml::AttributePlace* attribute(ElementIndex element, std::string_view name) const;
+  std::span<const xml::AttributePlace> attributes(ElementIndex element) const {
     return markup_.attributes_of(element);
   }
   /// The value of an attribute; null if the element does not have it.
-  std::optional<std::string> value(Element element, std::string_view name) const;
+  std::optional<std::string> value(ElementIndex element, std::string_view name) const;
 
   /// Whether `is_it(name, value)` for any attribute of the text.
   template <class Is>
@@ -66,23 +66,23 @@ class Draft {
 
   /// Changes a value, or adds the attribute behind the others as these are laid out. Notes nothing
   /// if the value is the same.
-  void set(Element element, std::string_view attribute, std::string_view value);
-  void remove_attribute(Element element, std::string_view attribute);
+  void set(ElementIndex element, std::string_view attribute, std::string_view value);
+  void remove_attribute(ElementIndex element, std::string_view attribute);
 
   /// Removes an element, and its line if nothing else is on it.
-  void remove(Element element);
+  void remove(ElementIndex element);
 
   /// Replaces an element by another, in the quotes and the indentation of the first.
-  void replace_element(Element element, const xml::ElementText& by);
+  void replace_element(ElementIndex element, const xml::ElementText& by);
 
   /// Puts a comment of these lines before an element, in place of one that stands there.
-  void set_comment(Element element, std::string_view lines);
+  void set_comment(ElementIndex element, std::string_view lines);
 
   /// Inserts text that stands for an element: behind a child of `parent` and the comments on its
   /// line, or with `after` null as the first child. It is laid out as its neighbours are.
   struct Place {
-    Element parent = 0;
-    std::optional<Element> after = {};
+    ElementIndex parent = 0;
+    std::optional<ElementIndex> after = {};
     bool keeps_blank_line = false;  ///< between it and its neighbour, if that has one before it
   };
   void insert(const xml::ElementText& element, const Place& place);
@@ -97,7 +97,7 @@ class Draft {
   Surroundings inside(const Place& place) const;
 
   /// The blanks before the element on its line; null: something else stands before it.
-  std::optional<std::string> margin_of(Element element) const;
+  std::optional<std::string> margin_of(ElementIndex element) const;
   /// The line end that is next to a place.
   std::string line_end_near(std::size_t at) const;
   /// The blanks by which an element is indented in another, as the first one in the text is.
@@ -107,11 +107,11 @@ class Draft {
 
   /// The text of an element with its lines indented by `to` in place of `from`. Line ends in
   /// values, comments and texts stay.
-  std::string reindented(Element element, std::string_view from, std::string_view to) const;
+  std::string reindented(ElementIndex element, std::string_view from, std::string_view to) const;
   std::string reindented(TextRange range, std::string_view from, std::string_view to) const;
 
   /// The range of an element and the blanks before it.
-  TextRange with_blanks_before(Element element) const;
+  TextRange with_blanks_before(ElementIndex element) const;
   /// The end of a place, and of the comments that follow it on its line.
   std::uint32_t end_with_comments(std::uint32_t end) const;
 
@@ -131,7 +131,7 @@ class Draft {
       : file_(std::move(file)), should_stop_(should_stop) {}
   Result<void> scan();
   std::uint32_t blanks_begin(std::uint32_t at) const;
-  std::string blanks_before(Element element) const;
+  std::string blanks_before(ElementIndex element) const;
 
   std::string file_;
   StopRequest should_stop_;

@@ -57,7 +57,7 @@ Result<void> Editor::operator()(const Group& group) {
   // One behind the other, then between the tags of the group. Forces of other groups leave them.
   const auto first = object(forces.front());
   if (!first) return fail(first.error());
-  if (const Element parent = draft_.place(*first).parent; parent != Draft::root)
+  if (const ElementIndex parent = draft_.place(*first).parent; parent != Draft::root)
     if (auto done = move_behind(forces.front(), name_of(parent)); !done) return done;
   for (std::size_t k = 1; k < forces.size(); ++k)
     if (auto done = move_behind(forces[k], forces[k - 1]); !done) return done;
@@ -89,7 +89,7 @@ Result<void> Editor::move_into(const std::string& force, const std::string& grou
   if (!from || !to) return fail(from ? to.error() : from.error());
   if (draft_.place(*from).parent == *to) return {};
   Draft::Place place{.parent = *to};
-  for (const Element child : draft_.children(*to)) place.after = child;
+  for (const ElementIndex child : draft_.children(*to)) place.after = child;
   const Draft::Surroundings around = draft_.inside(place);
   draft_.insert(std::vector{draft_.reindented(*from, draft_.margin_of(*from).value_or(""),
                                               around.is_inline ? "" : around.margin)},
@@ -103,7 +103,7 @@ Result<void> Editor::move_behind(const std::string& force, const std::string& ot
   const auto from = object(force);
   const auto to = object(other);
   if (!from || !to) return fail(from ? to.error() : from.error());
-  const std::vector<Element> all = draft_.children(Draft::root);
+  const std::vector<ElementIndex> all = draft_.children(Draft::root);
   const auto place = std::ranges::find(all, *to);
   if (place + 1 != all.end() && *(place + 1) == *from) return {};
   const std::string margin = draft_.margin_of(*to).value_or("");
@@ -127,7 +127,7 @@ Result<void> Editor::ungroup(const std::string& group) {
                                      *found == Draft::root ? "the scene" : in_quotes(group),
                                      draft_.name(*found)));
   std::vector<std::string> members;
-  for (const Element child : draft_.children(*found))
+  for (const ElementIndex child : draft_.children(*found))
     if (is_force(child)) members.push_back(name_of(child));
   for (const std::string& member : members)
     if (auto done = inherit(group, member); !done) return done;
@@ -135,13 +135,13 @@ Result<void> Editor::ungroup(const std::string& group) {
   // The tags of the group and its own curves go; what is between stays, comments too.
   const auto now = object(group);
   if (!now) return fail(now.error());
-  const Element element = *now;
+  const ElementIndex element = *now;
   parts_.insert(group);
   if (members.empty()) {
     draft_.remove(element);
     return draft_.commit();
   }
-  for (const Element child : draft_.children(element))
+  for (const ElementIndex child : draft_.children(element))
     if (!is_force(child)) draft_.remove(child);
   if (auto done = draft_.commit(); !done) return done;
   const xml::ElementPlace whole = draft_.place(element);
@@ -188,7 +188,7 @@ Result<void> Editor::inherit(const std::string& group, const std::string& force)
     }
     draft_.remove_attribute(*to->element, attribute);
     Draft::Place place{.parent = *to->element};
-    for (const Element child : draft_.children(place.parent, "animate")) place.after = child;
+    for (const ElementIndex child : draft_.children(place.parent, "animate")) place.after = child;
     const Draft::Surroundings around = draft_.inside(place);
     draft_.insert(std::vector{draft_.reindented(*curve, draft_.margin_of(*curve).value_or(""),
                                                 around.is_inline ? "" : around.margin)},
@@ -201,7 +201,7 @@ Result<void> Editor::inherit(const std::string& group, const std::string& force)
   return inherit_targets(*from, *to);
 }
 
-Result<void> Editor::inherit_targets(Element group, Element force) {
+Result<void> Editor::inherit_targets(ElementIndex group, ElementIndex force) {
   const auto theirs = draft_.value(group, "targets");
   if (!theirs) return {};
   const auto own = draft_.value(force, "targets");

@@ -133,7 +133,8 @@ Result<void> Editor::operator()(const MoveKeys& move) {
   });
 }
 
-void Editor::set_side(Element key, Side side, std::string_view name, const std::string& value) {
+void Editor::set_side(ElementIndex key, Side side, std::string_view name,
+                      const std::string& value) {
   // What both sides share becomes that of the other side.
   if (side != Side::Both) {
     if (const auto shared = draft_.value(key, "tangent")) {
@@ -156,7 +157,7 @@ Result<void> Editor::operator()(const SetTangent& set) {
       set.keys,
       [&]<int D>(const KeyedCurve<D>& curve, const std::vector<std::size_t>& keys) -> Result<void> {
         for (const std::size_t k : keys) {
-          const Element key = curve.elements[k];
+          const ElementIndex key = curve.elements[k];
           if (set.tangent)
             set_side(key, set.side,
                      set.side == Side::Both ? "tangent"
@@ -195,7 +196,7 @@ Result<void> Editor::operator()(const SetInterpolation& set) {
   return for_each_keys(
       set.keys, [&]<int D>(const KeyedCurve<D>& curve, const std::vector<std::size_t>& keys) {
         for (const std::size_t k : keys) {
-          const Element key = curve.elements[k];
+          const ElementIndex key = curve.elements[k];
           draft_.set(key, "interpolation", set.interpolation);
           for (const auto& [name, value] :
                {std::pair{"amplitude", set.amplitude}, std::pair{"period", set.period},
@@ -215,7 +216,7 @@ Result<void> Editor::operator()(const SetExtrapolation& set) {
   for (const std::string& channel : set.channels) {
     const auto curve = curve_of(channel);
     if (!curve) return fail(curve.error());
-    const Element animate = std::visit([](const auto& one) { return one.animate; }, *curve);
+    const ElementIndex animate = std::visit([](const auto& one) { return one.animate; }, *curve);
     if (set.before) draft_.set(animate, "before", *set.before);
     if (set.after) draft_.set(animate, "after", *set.after);
     parts_.insert(channel);

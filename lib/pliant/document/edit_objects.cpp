@@ -80,7 +80,7 @@ Result<void> Editor::operator()(const Add& addition) {
   }
   // Surfaces stand behind surfaces, if there are some; all else at the end.
   const bool is_surface = addition.kind == Description<Surface>::element;
-  for (const Element child : draft_.children(place.parent))
+  for (const ElementIndex child : draft_.children(place.parent))
     if (!is_surface || draft_.name(child) == addition.kind) place.after = child;
   draft_.insert(element, place);
   parts_.insert(addition.name);
@@ -90,7 +90,7 @@ Result<void> Editor::operator()(const Add& addition) {
 Result<void> Editor::operator()(const Duplicate& duplication) {
   const auto found = object(duplication.object);
   if (!found) return fail(found.error());
-  const Element original = *found;
+  const ElementIndex original = *found;
   if (original == Draft::root) return draft_.refuse("the scene cannot be duplicated");
   auto copy = Draft::make(std::string(draft_.whole(original)), draft_.file(), draft_.should_stop());
   if (!copy) return fail(copy.error());
@@ -99,7 +99,7 @@ Result<void> Editor::operator()(const Duplicate& duplication) {
   if (draft_.name(original) == "group") {
     std::set<std::string> taken = taken_names();
     taken.insert(duplication.name);
-    for (const Element member : copy->children(Draft::root)) {
+    for (const ElementIndex member : copy->children(Draft::root)) {
       const auto name = copy->value(member, "name");
       if (!name) continue;
       const std::string own = free_name(*name, taken);
@@ -115,19 +115,19 @@ Result<void> Editor::operator()(const Duplicate& duplication) {
 }
 
 Result<void> Editor::operator()(const Delete& deletion) {
-  std::vector<Element> elements;
+  std::vector<ElementIndex> elements;
   for (const std::string& name : deletion.objects) {
     const auto element = object(name);
     if (!element) return fail(element.error());
     if (*element == Draft::root) return draft_.refuse("the scene cannot be deleted");
     elements.push_back(*element);
     parts_.insert(name);
-    for (const Element member : draft_.children(*element))
+    for (const ElementIndex member : draft_.children(*element))
       if (is_force(member)) parts_.insert(name_of(member));
   }
   std::ranges::sort(elements);
   elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
-  const auto is_deleted = [&](Element element) {
+  const auto is_deleted = [&](ElementIndex element) {
     return std::ranges::binary_search(elements, element);
   };
   for (const auto& [name, element] : objects()) {
@@ -144,7 +144,7 @@ Result<void> Editor::operator()(const Delete& deletion) {
     draft_.set(element, "targets", *left);
     parts_.insert(name + ".targets");
   }
-  for (const Element element : elements)
+  for (const ElementIndex element : elements)
     if (!is_deleted(draft_.place(element).parent)) draft_.remove(element);
   return {};
 }

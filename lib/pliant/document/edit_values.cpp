@@ -114,7 +114,7 @@ Result<void> Editor::insert_part(const Spot& spot, const xml::ElementText& part)
     before.insert(before.end(), child.names.begin(), child.names.end());
   }
   Draft::Place place{.parent = spot.object};
-  for (const Element child : draft_.children(spot.object))
+  for (const ElementIndex child : draft_.children(spot.object))
     if (std::ranges::find(before, draft_.name(child)) != before.end()) place.after = child;
   draft_.insert(part, place);
   return {};
@@ -165,7 +165,7 @@ Result<void> Editor::insert_animate(const Spot& spot, const xml::ElementText& an
   if (auto done = draft_.commit(); !done) return done;
   // Elements keep their numbers. The curves of an element stand together, behind its waypoints.
   Draft::Place place{.parent = *spot.element};
-  for (const Element child : draft_.children(*spot.element)) {
+  for (const ElementIndex child : draft_.children(*spot.element)) {
     const std::string_view name = draft_.name(child);
     if (name == "animate" || name == "path" || name == "waypoint") place.after = child;
   }
@@ -204,13 +204,13 @@ Result<void> Editor::operator()(const SetPart& set) {
   for (const auto& [attribute, value] : set.attributes) name_part(attribute);
   const xml::ElementText text{.name = set.part, .attributes = set.attributes};
   // Curves of the part may stand in the surface itself.
-  for (const Element child : draft_.children(*object, "animate")) {
+  for (const ElementIndex child : draft_.children(*object, "animate")) {
     const std::string of(xml::trimmed(draft_.value(child, "attribute").value_or("")));
     if (!find_attribute(set.part, of)) continue;
     name_part(of);
     draft_.remove(child);
   }
-  const std::vector<Element> present = draft_.children(*object, set.part);
+  const std::vector<ElementIndex> present = draft_.children(*object, set.part);
   if (present.empty()) {
     auto inserted = insert_part({.path = {}, .object = *object, .part = set.part}, text);
     if (!inserted) return inserted;
@@ -218,7 +218,7 @@ Result<void> Editor::operator()(const SetPart& set) {
   } else {
     for (const xml::AttributePlace& one : draft_.attributes(present.front()))
       name_part(one.name.of(draft_.text()));
-    for (const Element child : draft_.children(present.front())) {
+    for (const ElementIndex child : draft_.children(present.front())) {
       const bool is_curve = draft_.name(child) == "animate";  // others: such as a map
       name_part(is_curve ? xml::trimmed(draft_.value(child, "attribute").value_or(""))
                          : draft_.name(child));

@@ -31,19 +31,19 @@ Result<void> Editor::apply(const Operation& operation) {
 
 std::vector<Editor::NamedElement> Editor::objects() const {
   std::vector<NamedElement> found;
-  const auto add = [&](Element element) {
+  const auto add = [&](ElementIndex element) {
     if (const auto name = draft_.value(element, "name")) found.emplace_back(*name, element);
   };
-  for (const Element child : draft_.children(Draft::root)) {
+  for (const ElementIndex child : draft_.children(Draft::root)) {
     add(child);
     if (draft_.name(child) != "group") continue;
-    for (const Element member : draft_.children(child))
+    for (const ElementIndex member : draft_.children(child))
       if (is_force(member)) add(member);
   }
   return found;
 }
 
-Result<Element> Editor::object(std::string_view name) const {
+Result<ElementIndex> Editor::object(std::string_view name) const {
   if (name.empty()) return Draft::root;
   std::vector<std::string> names;
   for (const auto& [other, element] : objects()) {
@@ -72,9 +72,9 @@ bool Editor::is_force(std::string_view element) const {
          std::ranges::find(parents, Description<pliant::Group>::element) != parents.end();
 }
 
-bool Editor::is_force(Element element) const { return is_force(draft_.name(element)); }
+bool Editor::is_force(ElementIndex element) const { return is_force(draft_.name(element)); }
 
-Result<Element> Editor::force(std::string_view name) const {
+Result<ElementIndex> Editor::force(std::string_view name) const {
   auto element = object(name);
   if (!element || (*element != Draft::root && is_force(*element))) return element;
   return draft_.refuse(fmt::format("{} is a <{}>, not a force",
@@ -82,7 +82,7 @@ Result<Element> Editor::force(std::string_view name) const {
                                    draft_.name(*element)));
 }
 
-std::string Editor::name_of(Element element) const {
+std::string Editor::name_of(ElementIndex element) const {
   return draft_.value(element, "name").value_or("");
 }
 
@@ -115,7 +115,7 @@ const AttributeFormat* Editor::find_attribute(std::string_view element,
 
 /// The elements whose attributes an object has: its own, its parts, and of several kinds of which
 /// one stands there the one that does.
-std::vector<std::string> Editor::parts_of(Element object) const {
+std::vector<std::string> Editor::parts_of(ElementIndex object) const {
   std::vector<std::string> parts{std::string(draft_.name(object))};
   for (const ChildFormat& child : format_of(draft_.name(object)).children) {
     for (const std::string_view name : child.names)
@@ -128,7 +128,7 @@ std::vector<std::string> Editor::parts_of(Element object) const {
 Result<Spot> Editor::spot(const std::string& given) const {
   const std::string path = given.starts_with('.') ? "scene" + given : given;
   const auto parts = xml::split_path(path);
-  const auto object = parts ? this->object(parts->name) : Result<Element>(Draft::root);
+  const auto object = parts ? this->object(parts->name) : Result<ElementIndex>(Draft::root);
   if (!object) return fail(object.error());
   const auto at = xml::resolve({.names = {},
                                 .elements =
@@ -155,11 +155,11 @@ Result<Spot> Editor::spot(const std::string& given) const {
 }
 
 /// `center.progress`, an attribute of the <path> that a position follows.
-Result<Spot> Editor::spot_on_path(const std::string& path, Element object,
+Result<Spot> Editor::spot_on_path(const std::string& path, ElementIndex object,
                                   const std::string& position, const std::string& attribute) const {
   const std::string whole = fmt::format("{}.{}", name_of(object), position);
   const AttributeFormat& format = *find_attribute("path", attribute);
-  for (const Element child : draft_.children(object, "path"))
+  for (const ElementIndex child : draft_.children(object, "path"))
     if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == position)
       return Spot{
           .path = path, .object = object, .element = child, .part = "path", .format = format};
@@ -167,26 +167,26 @@ Result<Spot> Editor::spot_on_path(const std::string& path, Element object,
       fmt::format("{} follows no path, so it has no {}", whole, in_quotes(attribute)));
 }
 
-std::optional<Element> Editor::animated(const Spot& spot) const {
+std::optional<ElementIndex> Editor::animated(const Spot& spot) const {
   if (!spot.element && draft_.name(spot.object) != "surface") return std::nullopt;
   if (spot.attribute() == "falloff") {
-    const std::vector<Element> curves = draft_.children(*spot.element, "falloff");
+    const std::vector<ElementIndex> curves = draft_.children(*spot.element, "falloff");
     return curves.empty() ? std::nullopt : std::optional(curves.front());
   }
   if (!spot.format.is_keyable) return std::nullopt;
-  std::vector<Element> owners;
+  std::vector<ElementIndex> owners;
   if (spot.element) owners.push_back(*spot.element);
   if (draft_.name(spot.object) == "surface") owners.push_back(spot.object);
-  for (const Element owner : owners)
-    for (const Element child : draft_.children(owner, "animate"))
+  for (const ElementIndex owner : owners)
+    for (const ElementIndex child : draft_.children(owner, "animate"))
       if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == spot.attribute())
         return child;
   return std::nullopt;
 }
 
-std::optional<Element> Editor::on_path(const Spot& spot) const {
+std::optional<ElementIndex> Editor::on_path(const Spot& spot) const {
   if (!spot.element) return std::nullopt;
-  for (const Element child : draft_.children(*spot.element, "path"))
+  for (const ElementIndex child : draft_.children(*spot.element, "path"))
     if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == spot.attribute())
       return child;
   return std::nullopt;

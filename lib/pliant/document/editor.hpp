@@ -17,10 +17,10 @@ namespace pliant::edit {
 
 /// The place of an attribute in a draft, whether it is given there or not.
 struct Spot {
-  std::string path;                     ///< without a component
-  Element object = 0;                   ///< the surface, force, group or scene
-  std::optional<Element> element = {};  ///< that may have the attribute; null: it is absent
-  std::string part = {};                ///< the name of that element
+  std::string path;                          ///< without a component
+  ElementIndex object = 0;                   ///< the surface, force, group or scene
+  std::optional<ElementIndex> element = {};  ///< that may have the attribute; null: it is absent
+  std::string part = {};                     ///< the name of that element
   AttributeFormat format = {};
   std::optional<std::size_t> component = {};
 
@@ -71,24 +71,24 @@ class Editor {
   Result<void> operator()(const Ungroup& ungroup);
 
   // Finding things: editor.cpp.
-  using NamedElement = std::pair<std::string, Element>;
+  using NamedElement = std::pair<std::string, ElementIndex>;
   std::vector<NamedElement> objects() const;
-  Result<Element> object(std::string_view name) const;
+  Result<ElementIndex> object(std::string_view name) const;
   bool is_force(std::string_view element) const;
-  bool is_force(Element element) const;
-  std::string name_of(Element element) const;
+  bool is_force(ElementIndex element) const;
+  std::string name_of(ElementIndex element) const;
   std::string free_name(const std::string& like, std::set<std::string>& taken) const;
   std::set<std::string> taken_names() const;
   const ElementFormat& format_of(std::string_view element) const;
   const AttributeFormat* find_attribute(std::string_view element, std::string_view name) const;
-  std::vector<std::string> parts_of(Element object) const;
+  std::vector<std::string> parts_of(ElementIndex object) const;
   Result<Spot> spot(const std::string& path) const;
-  Result<Spot> spot_on_path(const std::string& path, Element object, const std::string& position,
-                            const std::string& attribute) const;
+  Result<Spot> spot_on_path(const std::string& path, ElementIndex object,
+                            const std::string& position, const std::string& attribute) const;
 
   /// The <animate>, <falloff> or <path> of an attribute.
-  std::optional<Element> animated(const Spot& spot) const;
-  std::optional<Element> on_path(const Spot& spot) const;
+  std::optional<ElementIndex> animated(const Spot& spot) const;
+  std::optional<ElementIndex> on_path(const Spot& spot) const;
   /// The constant text of an attribute, or its default. Errors: it is animated; it has none.
   Result<std::string> constant(const Spot& spot) const;
 
@@ -118,7 +118,7 @@ class Editor {
                      const std::vector<KeyEntry<D>>& keys);
   template <int D>
   Result<void> write_loop(const KeyedCurve<D>& curve, const std::optional<Loop<D>>& wanted);
-  bool is_inherited(Element key, Side side) const;
+  bool is_inherited(ElementIndex key, Side side) const;
   template <int D>
   Result<void> write_keys(const KeyedCurve<D>& curve, const std::vector<KeyEntry<D>>& wanted);
   template <int D>
@@ -127,21 +127,21 @@ class Editor {
   void write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<D>& wanted);
   template <int D>
   Result<void> set_key(const KeyedCurve<D>& curve, const SetKey& set);
-  void set_side(Element key, Side side, std::string_view name, const std::string& value);
-  void set_or_remove(Element element, std::string_view name, const std::string& value);
-  void rewrite(Element element, std::string_view name, const std::string& value);
+  void set_side(ElementIndex key, Side side, std::string_view name, const std::string& value);
+  void set_or_remove(ElementIndex element, std::string_view name, const std::string& value);
+  void rewrite(ElementIndex element, std::string_view name, const std::string& value);
   Result<void> commit_rewritten(const std::string& channel);
   Result<void> scale_constant(const Spot& spot, const Scale& scale);
   template <int D>
   Result<void> set_curve(const Spot& spot, const CurveKeys<D>& keys);
 
   // Objects.
-  Result<Element> force(std::string_view name) const;
+  Result<ElementIndex> force(std::string_view name) const;
   Result<void> move_into(const std::string& force, const std::string& group);
   Result<void> move_behind(const std::string& force, const std::string& other);
   Result<void> ungroup(const std::string& group);
   Result<void> inherit(const std::string& group, const std::string& force);
-  Result<void> inherit_targets(Element group, Element force);
+  Result<void> inherit_targets(ElementIndex group, ElementIndex force);
 
   Draft& draft_;
   const Scene& scene_;

@@ -15,7 +15,7 @@
 namespace pliant {
 
 using edit::Draft;
-using edit::Element;
+using edit::ElementIndex;
 
 namespace {
 
@@ -46,7 +46,7 @@ class Formatter {
 
   /// Writes what stands from `begin` to `end`: some elements, and between them blanks, comments,
   /// declarations and a doctype.
-  void write_content(std::size_t begin, std::size_t end, const std::vector<Element>& elements,
+  void write_content(std::size_t begin, std::size_t end, const std::vector<ElementIndex>& elements,
                      const std::string& margin) {
     auto element = elements.begin();
     bool is_first = true;
@@ -96,7 +96,7 @@ class Formatter {
     result_ += layout_.line_end + margin;
   }
 
-  void write(Element element, const std::string& margin) {
+  void write(ElementIndex element, const std::string& margin) {
     const xml::ElementPlace& place = draft_.place(element);
     std::vector<std::string> attributes;
     for (const xml::AttributePlace& given : draft_.attributes(element))
@@ -108,7 +108,7 @@ class Formatter {
     const bool is_empty = xml::trimmed(content).empty();
     result_ += xml::opening_tag(name, attributes, is_empty ? "/>" : ">", margin, layout_);
     if (is_empty) return;
-    const std::vector<Element> children = draft_.children(element);
+    const std::vector<ElementIndex> children = draft_.children(element);
     if (has_text(place.tag_end, end, children)) {
       // Text stays as it is, but for the indentation of its lines.
       write_lines(content, margin_at(place.whole().begin), margin);
@@ -120,7 +120,8 @@ class Formatter {
   }
 
   /// Whether there is text between the elements of a content, or a CDATA section.
-  bool has_text(std::size_t begin, std::size_t end, const std::vector<Element>& children) const {
+  bool has_text(std::size_t begin, std::size_t end,
+                const std::vector<ElementIndex>& children) const {
     auto child = children.begin();
     for (std::size_t at = begin; at < end;) {
       at = std::min(text_.find_first_not_of(xml::blanks, at), end);

@@ -28,7 +28,7 @@ AnyCurve keyed(const Draft& draft, const xml::Element& element, KeyedCurve<D> re
 }
 
 template <int D>
-Result<AnyCurve> read_curve_of(const Draft& draft, Element animate, xml::ValueKind kind,
+Result<AnyCurve> read_curve_of(const Draft& draft, ElementIndex animate, xml::ValueKind kind,
                                const std::string& channel) {
   const xml::Tree tree = draft.tree();
   const xml::Element element(tree, 0, animate);
@@ -51,13 +51,13 @@ bool is_computed(const Draft& draft, const xml::AttributePlace& attribute) {
   return xml::decoded(attribute.value.of(draft.text())).find('$') != std::string::npos;
 }
 
-bool is_computed(const Draft& draft, Element element) {
+bool is_computed(const Draft& draft, ElementIndex element) {
   return std::ranges::any_of(draft.attributes(element),
                              [&](const auto& one) { return is_computed(draft, one); });
 }
 
 /// The curve of a channel that has keys with `$`.
-Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
+Result<AnyCurve> read_computed_curve(const Draft& draft, ElementIndex animate,
                                      const std::string& channel, const ParseScene& parse) {
   const xml::Tree tree = draft.tree();
   const auto scene = parse(draft.text());
@@ -92,21 +92,21 @@ Result<AnyCurve> read_computed_curve(const Draft& draft, Element animate,
 }
 
 /// Whether a key has three numbers as its value; see the reader of a tangent's channel.
-bool has_wide_values(const Draft& draft, Element animate) {
-  const std::vector<Element> keys = draft.children(animate, "key");
-  return std::ranges::any_of(keys, [&](Element key) {
+bool has_wide_values(const Draft& draft, ElementIndex animate) {
+  const std::vector<ElementIndex> keys = draft.children(animate, "key");
+  return std::ranges::any_of(keys, [&](ElementIndex key) {
     return xml::words_of(draft.value(key, "value").value_or("")).size() > 1;
   });
 }
 
 }  // namespace
 
-Result<AnyCurve> read_keyed_curve(const Draft& draft, Element animate, std::string_view type,
+Result<AnyCurve> read_keyed_curve(const Draft& draft, ElementIndex animate, std::string_view type,
                                   const std::string& channel, const ParseScene& parse) {
   using xml::ValueKind;
-  const std::vector<Element> keys = draft.children(animate);
+  const std::vector<ElementIndex> keys = draft.children(animate);
   if (is_computed(draft, animate) ||
-      std::ranges::any_of(keys, [&](Element key) { return is_computed(draft, key); }))
+      std::ranges::any_of(keys, [&](ElementIndex key) { return is_computed(draft, key); }))
     return read_computed_curve(draft, animate, channel, parse);
   if (type == "vector") return read_curve_of<3>(draft, animate, ValueKind::Vector, channel);
   if (type == "boolean") return read_curve_of<1>(draft, animate, ValueKind::Boolean, channel);

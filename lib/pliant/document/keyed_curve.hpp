@@ -17,8 +17,8 @@ namespace pliant::edit {
 template <int D>
 struct KeyedCurve {
   std::string channel;
-  Element animate = 0;            ///< or <falloff>
-  std::vector<Element> elements;  ///< of the keys
+  ElementIndex animate = 0;            ///< or <falloff>
+  std::vector<ElementIndex> elements;  ///< of the keys
   xml::KeyAxis axis = xml::KeyAxis::Frame;
   xml::ValueKind kind = xml::ValueKind::Number;
   xml::AnimateText<D> defaults;
@@ -45,7 +45,7 @@ using ParseScene = std::function<Result<Scene>(const std::string& text)>;
 /// Reads the curve of an <animate> or <falloff> whose values have the type of an attribute. Numbers
 /// of keys with a `$` are those of the scene that `parse` makes of the draft.
 /// Errors: those of the reader, with their lines; a `$` in the <animate> itself or in a <falloff>.
-Result<AnyCurve> read_keyed_curve(const Draft& draft, Element animate, std::string_view type,
+Result<AnyCurve> read_keyed_curve(const Draft& draft, ElementIndex animate, std::string_view type,
                                   const std::string& channel, const ParseScene& parse);
 
 }  // namespace pliant::edit

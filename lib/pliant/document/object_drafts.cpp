@@ -43,13 +43,13 @@ bool ObjectDrafts::apply(const Operation& operation) {
 
 void ObjectDrafts::find_objects() {
   indent_ = whole_.indent();
-  const auto add = [&](Element element) {
+  const auto add = [&](ElementIndex element) {
     if (auto name = whole_.value(element, "name")) objects_.emplace(*std::move(name), element);
   };
-  for (const Element child : whole_.children(Draft::root)) {
+  for (const ElementIndex child : whole_.children(Draft::root)) {
     add(child);
     if (whole_.name(child) != "group") continue;
-    for (const Element member : whole_.children(child)) add(member);
+    for (const ElementIndex member : whole_.children(child)) add(member);
   }
 }
 
@@ -65,9 +65,9 @@ ObjectDrafts::Part* ObjectDrafts::part_of(std::string_view name) {
 }
 
 /// The object with the tags around it, each with the blanks before it.
-std::string ObjectDrafts::scene_around(Element object, std::size_t& begin) const {
+std::string ObjectDrafts::scene_around(ElementIndex object, std::size_t& begin) const {
   std::string opening, closing;
-  for (Element outer = whole_.place(object).parent;; outer = whole_.place(outer).parent) {
+  for (ElementIndex outer = whole_.place(object).parent;; outer = whole_.place(outer).parent) {
     const TextRange tag{outer == Draft::root ? whole_.place(outer).opening_tag().begin
                                              : whole_.with_blanks_before(outer).begin,
                         whole_.place(outer).tag_end};

@@ -38,13 +38,13 @@ class ObjectDrafts {
   };
 
   Part* part_of(std::string_view name);
-  std::string scene_around(Element object, std::size_t& begin) const;
+  std::string scene_around(ElementIndex object, std::size_t& begin) const;
   void find_objects();
 
   Draft& whole_;
   const Scene& scene_;
-  std::map<std::string, Element> objects_;  // of the whole draft, by name; empty: not known
-  std::string indent_;                      // of the whole draft
+  std::map<std::string, ElementIndex> objects_;  // of the whole draft, by name; empty: not known
+  std::string indent_;                           // of the whole draft
   std::map<std::string, Part, std::less<>> parts_of_text_;  // by the name of the object
   std::set<std::string> parts_;
 };

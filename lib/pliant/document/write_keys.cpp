@@ -94,7 +94,7 @@ std::string changed_words(std::string_view old, std::string_view now) {
   return text.append(old, copied);
 }
 
-void Editor::set_or_remove(Element element, std::string_view name, const std::string& value) {
+void Editor::set_or_remove(ElementIndex element, std::string_view name, const std::string& value) {
   if (value.empty())
     draft_.remove_attribute(element, name);
   else
@@ -102,7 +102,7 @@ void Editor::set_or_remove(Element element, std::string_view name, const std::st
 }
 
 /// Changes an attribute of a curve, or removes it if there is no value.
-void Editor::rewrite(Element element, std::string_view name, const std::string& value) {
+void Editor::rewrite(ElementIndex element, std::string_view name, const std::string& value) {
   const auto old = draft_.value(element, name);
   if (!old && value.empty()) return;
   if (old && !replaces_computed_ && computed_.empty() && old->find('$') != std::string::npos)
@@ -121,7 +121,7 @@ Result<void> Editor::commit_rewritten(const std::string& channel) {
 }
 
 /// Whether one side of a key has the tangent of its <animate>.
-bool Editor::is_inherited(Element key, Side side) const {
+bool Editor::is_inherited(ElementIndex key, Side side) const {
   const auto has = [&](std::string_view name) { return draft_.attribute(key, name) != nullptr; };
   if (has("tangent")) return false;
   return side == Side::In ? !has("in") && !has("inHandle") : !has("out") && !has("outHandle");
@@ -132,7 +132,7 @@ template <int D>
 void Editor::write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEntry<D>& wanted) {
   const Key<D>& old = curve.keys()[key];
   const Key<D>& now = wanted.key;
-  const Element element = curve.elements[key];
+  const ElementIndex element = curve.elements[key];
   const std::string_view place = xml::place_name(curve.axis);
   if (!has_same_bits(old.frame, now.frame)) rewrite(element, place, to_text(now.frame));
   if (!has_same_bits<D>(old.value, now.value))
@@ -154,7 +154,7 @@ void Editor::write_key(const KeyedCurve<D>& curve, std::size_t key, const KeyEnt
 template <int D>
 void Editor::write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<D>& wanted) {
   Key<D> old = curve.keys()[key];
-  const Element element = curve.elements[key];
+  const ElementIndex element = curve.elements[key];
   // The slope of the <animate> may have another value already.
   const Tangent<D>& standard = curve.defaults.tangent;
   if (standard.kind == Tangent<D>::Kind::Slope) {
@@ -259,9 +259,9 @@ template <int D>
 Result<void> Editor::write_loop(const KeyedCurve<D>& curve, const std::optional<Loop<D>>& wanted) {
   const std::optional<Loop<D>>& before = curve.curve.keys().loop;
   if (wanted == before) return {};
-  const std::vector<Element> present = draft_.children(curve.animate, "loop");
+  const std::vector<ElementIndex> present = draft_.children(curve.animate, "loop");
   if (!wanted) {
-    for (const Element loop : present) draft_.remove(loop);
+    for (const ElementIndex loop : present) draft_.remove(loop);
   } else if (!before || present.empty()) {
     draft_.insert(xml::loop_element(*wanted, curve.kind),
                   {.parent = curve.animate, .after = draft_.children(curve.animate).back()});

@@ -124,10 +124,10 @@ Result<std::vector<std::uint32_t>> AccessorReader::indices(std::size_t accessor)
 
 Result<std::vector<double>> AccessorReader::read(const Read& read) {
   const Accessor& accessor = read.accessor;
-  std::optional<Elements> source;
+  std::optional<StridedBytes> source;
   if (accessor.view) {
     const auto found =
-        elements(read, *accessor.view, accessor.offset, accessor.count, read.element_size());
+        strided_bytes(read, *accessor.view, accessor.offset, accessor.count, read.element_size());
     if (!found) return fail(found.error());
     source = *found;
   }
@@ -149,9 +149,11 @@ Result<std::vector<double>> AccessorReader::read(const Read& read) {
 }
 
 // No difference below can be negative, so no unsigned number wraps around.
-Result<AccessorReader::Elements> AccessorReader::elements(const Read& read, std::size_t view_number,
-                                                          std::uint64_t offset, std::uint64_t count,
-                                                          std::size_t element_size) const {
+Result<AccessorReader::StridedBytes> AccessorReader::strided_bytes(const Read& read,
+                                                                   std::size_t view_number,
+                                                                   std::uint64_t offset,
+                                                                   std::uint64_t count,
+                                                                   std::size_t element_size) const {
   const BufferView& view = document_.views[view_number];
   const auto buffer = buffers_.bytes(view.buffer);
   if (!buffer) return fail(buffer.error());
@@ -166,7 +168,7 @@ Result<AccessorReader::Elements> AccessorReader::elements(const Read& read, std:
     return read.broken(fmt::format("has elements of {} bytes, but bufferViews[{}].byteStride is {}",
                                    element_size, view_number, stride));
   }
-  if (count == 0) return Elements{{}, static_cast<std::size_t>(stride)};
+  if (count == 0) return StridedBytes{{}, static_cast<std::size_t>(stride)};
   const bool is_within = offset <= view.size && element_size <= view.size - offset &&
                          count - 1 <= (view.size - offset - element_size) / stride;
   if (!is_within) {
@@ -175,9 +177,9 @@ Result<AccessorReader::Elements> AccessorReader::elements(const Read& read, std:
                     "{} of {}",
                     view_number, count, offset, view.size));
   }
-  return Elements{buffer->substr(static_cast<std::size_t>(view.offset + offset),
-                                 static_cast<std::size_t>((count - 1) * stride + element_size)),
-                  static_cast<std::size_t>(stride)};
+  return StridedBytes{buffer->substr(static_cast<std::size_t>(view.offset + offset),
+                                     static_cast<std::size_t>((count - 1) * stride + element_size)),
+                      static_cast<std::size_t>(stride)};
 }
 
 Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& numbers,
@@ -196,10 +198,10 @@ Result<void> AccessorReader::put_sparse(const Read& read, std::vector<double>& n
   const std::size_t index_size = size_of(sparse.index_type);
   const std::size_t size = size_of(accessor.component_type);
   const auto indices =
-      elements(read, sparse.index_view, sparse.index_offset, sparse.count, index_size);
+      strided_bytes(read, sparse.index_view, sparse.index_offset, sparse.count, index_size);
   if (!indices) return fail(indices.error());
-  const auto values =
-      elements(read, sparse.value_view, sparse.value_offset, sparse.count, read.element_size());
+  const auto values = strided_bytes(read, sparse.value_view, sparse.value_offset, sparse.count,
+                                    read.element_size());
   if (!values) return fail(values.error());
   std::uint64_t least = 0;
   for (std::size_t k = 0; k < sparse.count; ++k) {

@@ -41,15 +41,15 @@ class AccessorReader {
 
  private:
   // Elements in a buffer, each `stride` bytes after the one before.
-  struct Elements {
+  struct StridedBytes {
     std::string_view bytes;  // from the first to the end of the last
     std::size_t stride;
   };
   struct Read;  // an accessor that is being read
 
   Result<std::vector<double>> read(const Read& read);
-  Result<Elements> elements(const Read& read, std::size_t view, std::uint64_t offset,
-                            std::uint64_t count, std::size_t element_size) const;
+  Result<StridedBytes> strided_bytes(const Read& read, std::size_t view, std::uint64_t offset,
+                                     std::uint64_t count, std::size_t element_size) const;
   Result<void> put_sparse(const Read& read, std::vector<double>& numbers, StopPoll& poll) const;
   const Document& document_;
   Buffers& buffers_;

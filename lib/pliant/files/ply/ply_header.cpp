@@ -103,7 +103,7 @@ Result<void> read_header_line(std::span<const std::string_view> words, int line,
 
 }  // namespace
 
-int Element::find(std::initializer_list<std::string_view> names) const {
+int PlyElement::find(std::initializer_list<std::string_view> names) const {
   for (const std::string_view each : names)
     for (std::size_t k = 0; k < properties.size(); ++k)
       if (properties[k].name == each) return static_cast<int>(k);

@@ -25,7 +25,7 @@ struct Property {
   std::optional<NumberType> count_type = {};  ///< set for a list
 };
 
-struct Element {
+struct PlyElement {
   std::string name;
   std::int64_t count = 0;
   std::vector<Property> properties;
@@ -36,7 +36,7 @@ struct Element {
 
 struct Header {
   Encoding encoding = Encoding::Ascii;
-  std::vector<Element> elements;
+  std::vector<PlyElement> elements;
   std::size_t size = 0;  ///< offset of the elements
   int line_count = 0;
 };

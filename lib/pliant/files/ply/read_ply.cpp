@@ -119,7 +119,7 @@ class PlyReader {
         numbers_(body, header.encoding, header.line_count + 1, poll_) {}
 
   Result<Mesh> read() {
-    for (const Element& element : header_.elements) {
+    for (const PlyElement& element : header_.elements) {
       if (auto read = read_element(element); !read) return fail(read.error());
     }
     left_out_.add("byte after its last element", "bytes after its last element",
@@ -151,7 +151,7 @@ class PlyReader {
   // number.
   using Values = std::vector<std::vector<double>>;
 
-  Result<void> read_element(const Element& element) {
+  Result<void> read_element(const PlyElement& element) {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
     const bool is_strip = element.name == "tristrips";
@@ -181,7 +181,7 @@ class PlyReader {
     return {};
   }
 
-  Result<void> find_vertex_properties(const Element& vertex) {
+  Result<void> find_vertex_properties(const PlyElement& vertex) {
     x_ = vertex.find({"x"});
     y_ = vertex.find({"y"});
     z_ = vertex.find({"z"});
@@ -206,7 +206,7 @@ class PlyReader {
     return {};
   }
 
-  Result<void> find_attributes(const Element& vertex) {
+  Result<void> find_attributes(const PlyElement& vertex) {
     for (const std::string& name : names_) {
       const int place = vertex.find({name});
       if (place < 0 || vertex.properties[static_cast<std::size_t>(place)].count_type) {
@@ -223,7 +223,7 @@ class PlyReader {
     return {};
   }
 
-  Result<void> find_face_properties(const Element& face) {
+  Result<void> find_face_properties(const PlyElement& face) {
     corners_ = face.find({"vertex_indices", "vertex_index"});
     corner_uvs_ = face.find({"texcoord"});
     const auto is_list = [&](int k) {
@@ -237,7 +237,7 @@ class PlyReader {
     return {};
   }
 
-  Result<void> read_values(const Element& element, std::int64_t index, Values& values) {
+  Result<void> read_values(const PlyElement& element, std::int64_t index, Values& values) {
     for (std::size_t k = 0; k < element.properties.size(); ++k) {
       const Property& property = element.properties[k];
       const auto count = property.count_type ? numbers_.next(*property.count_type) : 1.0;
@@ -257,7 +257,7 @@ class PlyReader {
     return {};
   }
 
-  tl::unexpected<Error> no_number(const Element& element, std::int64_t index,
+  tl::unexpected<Error> no_number(const PlyElement& element, std::int64_t index,
                                   std::size_t property) {
     if (poll_.after(0)) return interrupted();
     if (numbers_.has_run_out()) return ends_within(element, index);
@@ -266,7 +266,7 @@ class PlyReader {
                    line());
   }
 
-  tl::unexpected<Error> ends_within(const Element& element, std::int64_t index) const {
+  tl::unexpected<Error> ends_within(const PlyElement& element, std::int64_t index) const {
     return invalid(fmt::format("the file is truncated: it ends within {} {} of {}, counted from 0",
                                in_quotes(element.name), index, element.count),
                    line());
