@@ -36,17 +36,17 @@ struct Sample {
 };
 
 // The damping along a line of materials with which it settles at a time, or nearest to it.
-struct SettlingFound {
+struct DampingFound {
   Sample nearest;
   std::optional<Sample> other = {};  // on the other side of a jump from `nearest`
   bool is_between = false;           // there are times on both sides of the one that is wanted
 };
 
 // When a material with that damping settles; null: there is none.
-using SettlingAt = std::function<std::optional<double>(double damping)>;
+using SettlingTimeOf = std::function<std::optional<double>(double damping)>;
 
 // Halves the interval between two samples on two sides of `wanted`.
-SettlingFound between(Sample a, Sample b, double wanted, const SettlingAt& settling_at) {
+DampingFound between(Sample a, Sample b, double wanted, const SettlingTimeOf& settling_at) {
   for (int turn = 0; turn < 100; ++turn) {
     const double middle = a.damping > 0 && b.damping > 0 ? std::sqrt(a.damping * b.damping)
                                                          : 0.5 * (a.damping + b.damping);
@@ -63,15 +63,15 @@ SettlingFound between(Sample a, Sample b, double wanted, const SettlingAt& settl
 }
 
 // The nearest to `wanted` among samples in the order of their dampings, and between them.
-SettlingFound nearest_of(std::span<const Sample> samples, double wanted,
-                         const SettlingAt& settling_at) {
+DampingFound nearest_of(std::span<const Sample> samples, double wanted,
+                        const SettlingTimeOf& settling_at) {
   const auto miss = [&](const Sample& one) { return miss_of(one.settling, wanted); };
-  SettlingFound best{samples.front()};
-  std::optional<SettlingFound> jump;
+  DampingFound best{samples.front()};
+  std::optional<DampingFound> jump;
   for (std::size_t k = 0; k < samples.size(); ++k) {
     if (miss(samples[k]) < miss(best.nearest)) best = {samples[k]};
     if (k == 0 || (samples[k - 1].settling > wanted) == (samples[k].settling > wanted)) continue;
-    SettlingFound found = between(samples[k - 1], samples[k], wanted, settling_at);
+    DampingFound found = between(samples[k - 1], samples[k], wanted, settling_at);
     if (!found.other) return found;
     if (!jump || miss(found.nearest) < miss(jump->nearest)) jump = found;
   }
@@ -182,7 +182,7 @@ Miss MaterialSearch::too_soon(double wanted, double soonest, std::string_view re
           fmt::format("it settles in {} s at the soonest, since {}", figure(soonest), reason)};
 }
 
-Miss between_swings(const SettlingFound& found) {
+Miss between_swings(const DampingFound& found) {
   if (!found.other) return {};
   const double a = found.nearest.settling, b = found.other->settling;
   return {
@@ -207,7 +207,7 @@ MaterialFound MaterialSearch::for_settling(double wanted) const {
                           ? 2 * std::sqrt(lambda_ * now_.density)
                           : lambda_ * wanted * (motion_.interval / motion_.frame_seconds) / 3;
   const auto felt = [&](double damping) { return Dynamics{now_.density, damping * unit}; };
-  const SettlingAt settling_at = [&](double damping) {
+  const SettlingTimeOf settling_at = [&](double damping) {
     return std::optional(motion_.settling(felt(damping)).time);
   };
   // From the soonest on, to more and to less damping, until it takes far too long.
@@ -227,8 +227,8 @@ MaterialFound MaterialSearch::for_settling(double wanted) const {
   const auto creeping = [&] { return nearest_of(walk(1.05, 1e6), wanted, settling_at); };
   const double ratio = motion_.felt(now_.density, now_.damping).damping / unit;
   const bool creeps = now_.density == 0 || ratio > soonest;
-  const SettlingFound best = creeps ? creeping() : ringing();
-  const auto is_met = [&](const SettlingFound& one) {
+  const DampingFound best = creeps ? creeping() : ringing();
+  const auto is_met = [&](const DampingFound& one) {
     return miss_of(one.nearest.settling, wanted) <= wanted_miss;
   };
   found.material = material(felt(best.nearest.damping));
@@ -244,7 +244,7 @@ MaterialFound MaterialSearch::for_settling(double wanted) const {
                               "with more damping it creeps; a lower density helps");
   }
   if (creeps || found.settling.obstacle == Obstacle::None) return found;
-  if (const SettlingFound other = creeping(); is_met(other)) {
+  if (const DampingFound other = creeping(); is_met(other)) {
     found.settling.reason +=
         fmt::format("; with {} {} it creeps there in that time", damping_word(),
                     figure(material(felt(other.nearest.damping)).damping));
@@ -344,7 +344,7 @@ MaterialFound MaterialSearch::for_both(double settling, double frequency) const 
     found.settling = {Obstacle::StepsTooLong, "its steps damp it, as above"};
     return found;
   }
-  const SettlingAt settling_at = [&](double ratio) -> std::optional<double> {
+  const SettlingTimeOf settling_at = [&](double ratio) -> std::optional<double> {
     const auto dynamics = felt(ratio);
     if (!dynamics) return {};
     return motion_.settling(*dynamics).time;
@@ -356,7 +356,7 @@ MaterialFound MaterialSearch::for_both(double settling, double frequency) const 
   }
   if (samples.empty() || samples.back().settling <= 4 * settling)
     samples.push_back({0, *settling_at(0)});
-  const SettlingFound best = nearest_of(samples, settling, settling_at);
+  const DampingFound best = nearest_of(samples, settling, settling_at);
   found.material = material(*felt(best.nearest.damping));
   if (miss_of(best.nearest.settling, settling) <= wanted_miss) return found;
   found.settling = between_swings(best);

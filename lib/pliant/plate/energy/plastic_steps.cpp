@@ -28,7 +28,7 @@ bool are_all_zero(const Numbers& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double number) { return number == 0; });
 }
 
-Error not_settled(Eigen::Index moving, int rounds) {
+Error not_in_equilibrium(Eigen::Index moving, int rounds) {
   return {ErrorCode::SolverFailed,
           fmt::format("a plastic step of {} nodes did not settle in {} rounds", moving, rounds)};
 }
@@ -36,10 +36,11 @@ Error not_settled(Eigen::Index moving, int rounds) {
 // A step finds the displacement at which it and the plastic curvatures that it makes fit together,
 // the least of a convex energy. Of its gradient, A x - right-hand side - f(x), only the part on the
 // places that may flow is not 0: all but the solves is done on these.
-class SettlingSteps final : public PlasticSteps {
+class EquilibriumSteps final : public PlasticSteps {
  public:
-  SettlingSteps(FlowingPlate& plate, const RunContext& context, StepTerms terms, double hardening,
-                const TimeSteps& steps, std::vector<int> components, const PlasticField& plastic)
+  EquilibriumSteps(FlowingPlate& plate, const RunContext& context, StepTerms terms,
+                   double hardening, const TimeSteps& steps, std::vector<int> components,
+                   const PlasticField& plastic)
       : plate_(plate),
         context_(context),
         kernels_(kernels_of_width(context.most_lanes)),
@@ -63,7 +64,7 @@ class SettlingSteps final : public PlasticSteps {
   Result<bool> step(Motion& motion, PlasticField& plastic) override {
     Field& w = motion.displacement;
     Field& v = motion.velocity;
-    if (auto settled = settle(motion, plastic); !settled) return fail(settled.error());
+    if (auto found = find_equilibrium(motion, plastic); !found) return fail(found.error());
     const bool flowed = places_ && places_->is_flowing();
     if (flowed) {
       const double part = steps_.are_reflected() ? 2 : 1;
@@ -87,7 +88,7 @@ class SettlingSteps final : public PlasticSteps {
 
  private:
   // Finds x_, and the forces by what then grows in flowed_.
-  Result<void> settle(const Motion& motion, const PlasticField& from) {
+  Result<void> find_equilibrium(const Motion& motion, const PlasticField& from) {
     constexpr int most_rounds = 100;
     const Eigen::Index moving = motion.displacement.rows();
     if (places_) places_->begin(from);
@@ -109,7 +110,7 @@ class SettlingSteps final : public PlasticSteps {
       }
       if (auto near = descend(moving); !near) return near;
     }
-    return fail(not_settled(moving, most_rounds));
+    return fail(not_in_equilibrium(moving, most_rounds));
   }
 
   // Whether places yield that are not among those that are watched: then they are from now on.
@@ -185,7 +186,7 @@ class SettlingSteps final : public PlasticSteps {
         return {};
       }
     }
-    if (!are_all_zero(gradient)) return fail(not_settled(moving, most_turns));
+    if (!are_all_zero(gradient)) return fail(not_in_equilibrium(moving, most_turns));
     forces_ = flowed_;
     return {};
   }
@@ -275,8 +276,8 @@ std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunC
                                                  const TimeSteps& steps,
                                                  std::vector<int> components,
                                                  const PlasticField& plastic) {
-  return std::make_unique<SettlingSteps>(plate, context, std::move(terms), hardening, steps,
-                                         std::move(components), plastic);
+  return std::make_unique<EquilibriumSteps>(plate, context, std::move(terms), hardening, steps,
+                                            std::move(components), plastic);
 }
 
 Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,
