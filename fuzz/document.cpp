@@ -1,6 +1,6 @@
 // A scene and operations on it: the first part of the input, before a line of %%, is the text, and
 // each line behind it an operation, by its letter and fields between bars. Whatever is done: an
-// accepted text can be read, a refused operation changes nothing, and steps can be taken back and
+// accepted text can be read, a refused operation changes nothing, and edits can be taken back and
 // made again to the byte.
 
 #include "pliant/document/document.hpp"
@@ -187,7 +187,7 @@ Result<void> check_short(const Scene& scene) {
   return fail(ErrorCode::InvalidInput, "too many frames for a fuzzer", "fuzz.xml");
 }
 
-/// The steps of the document, as texts.
+/// The edits of the document, as texts.
 using Texts = std::vector<std::string>;
 
 void check_change(const Change& change, std::string text, const std::string& after) {
@@ -215,16 +215,16 @@ void operate(SceneDocument& document, const std::vector<Operation>& operations, 
 
 void check_history(SceneDocument& document, const Texts& texts) {
   const bool was_undone = document.can_redo();
-  for (std::size_t step = texts.size(); step-- > 1;) {
+  for (std::size_t edit = texts.size(); edit-- > 1;) {
     const auto undone = document.undo();
     require(undone.has_value());
-    check_change(*undone, texts[step], texts[step - 1]);
-    require(document.text() == texts[step - 1]);
+    check_change(*undone, texts[edit], texts[edit - 1]);
+    require(document.text() == texts[edit - 1]);
   }
   require(!document.can_undo() && !document.undo().has_value());
-  for (std::size_t step = 1; step < texts.size(); ++step) {
+  for (std::size_t edit = 1; edit < texts.size(); ++edit) {
     require(document.can_redo() && document.redo().has_value());
-    require(document.text() == texts[step]);
+    require(document.text() == texts[edit]);
   }
   require(document.can_redo() == was_undone);
 }

@@ -25,11 +25,11 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
     json["rows"] = facts.grid->rows;
     if (!facts.grid->is_open()) json["wrap"] = wrap_word(*facts.grid);
   } else {
-    const auto& [nodes, faces, patches, border_edges, unit] = *facts.triangles;
+    const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
     json["grid"] = nullptr;
     json["nodes"] = nodes;
     json["faces"] = faces;
-    json["pieces"] = patches;
+    json["pieces"] = pieces;
     json["borderEdges"] = border_edges;
     json["unit"] = unit;
   }

@@ -46,11 +46,11 @@ std::string nodes_text(const SceneFacts::SurfaceFacts& facts) {
     return fmt::format("grid {} x {}{}", facts.grid->columns, facts.grid->rows,
                        closed_text(*facts.grid));
   }
-  const auto& [nodes, faces, patches, border_edges, unit] = *facts.triangles;
+  const auto& [nodes, faces, pieces, border_edges, unit] = *facts.triangles;
   const std::string lengths = unit[0] == unit[1] ? fmt::format("{:.5g}", unit[0])
                                                  : fmt::format("{:.5g} {:.5g}", unit[0], unit[1]);
   return fmt::format("surface of {} in {}, {}, {}, unit {}", counted(nodes, "node"),
-                     counted(faces, "face"), counted(patches, "piece"),
+                     counted(faces, "face"), counted(pieces, "piece"),
                      counted(border_edges, "border edge"), lengths);
 }
 

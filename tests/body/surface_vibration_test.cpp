@@ -78,12 +78,12 @@ Mesh rolled(int count, double angle) {
 
 }  // namespace
 
-TEST_CASE("a held piece vibrates as its full matrix says", "[body][surface][vibration]") {
+TEST_CASE("a held patch vibrates as its full matrix says", "[body][surface][vibration]") {
   check_patches(square(9, 1, 0.2), Border::Clamped, 0, 1e-9);
   check_patches(square(7, 3, 0.2, true), Border::Pinned, 0, 1e-9);
 }
 
-TEST_CASE("a floating piece's slowest vibration leaves its rigid motions out",
+TEST_CASE("a floating patch's slowest vibration leaves its rigid motions out",
           "[body][surface][vibration]") {
   check_patches(square(8, 1, 0.2), Border::Free, 3, 1e-8);
   check_patches(square(8, 1, 0, true), Border::Free, 3, 1e-8);

@@ -260,7 +260,7 @@ TEST_CASE("what is outside the region does not move, to the bit", "[body][surfac
   CHECK(moved == body.last_step().unknown_count());
 }
 
-TEST_CASE("a piece that nothing holds does not move", "[body][surface]") {
+TEST_CASE("a patch that nothing holds does not move", "[body][surface]") {
   TriangleBody body = body_of(sphere(2));
   REQUIRE(body.step(moving_inputs({load_on({0, 0, 0}, 5, 5)})));
   CHECK_FALSE(body.last_step().solves());
@@ -387,7 +387,7 @@ TEST_CASE("a released surface comes back to rest, all of it", "[body][surface]")
   CHECK(frames > 3);
 }
 
-TEST_CASE("a piece that nothing held for a while still comes back to rest", "[body][surface]") {
+TEST_CASE("a patch that nothing held for a while still comes back to rest", "[body][surface]") {
   // Beside a sheet, which moves all the time.
   Mesh mesh = square(16, 4, 0.3);
   const int first = static_cast<int>(mesh.positions.rows());

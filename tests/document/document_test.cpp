@@ -23,7 +23,7 @@ const std::string text =
 
 SceneDocument document() { return SceneDocument::from_text(text, "shot.xml", "").value(); }
 
-TEST_CASE("steps have names, and are taken back and made again", "[document]") {
+TEST_CASE("edits have names, and are taken back and made again", "[document]") {
   SceneDocument one = document();
   CHECK(one.undo_name().empty());
   CHECK_FALSE(one.undo());
@@ -47,7 +47,7 @@ TEST_CASE("steps have names, and are taken back and made again", "[document]") {
   REQUIRE(one.redo());
   REQUIRE(one.redo());
   CHECK(one.text() == second);
-  // A new step: what was undone is lost.
+  // A new edit: what was undone is lost.
   REQUIRE(one.apply({edit::Set{"b.magnitude", "4"}}));
   CHECK_FALSE(one.can_redo());
   CHECK_FALSE(one.redo());

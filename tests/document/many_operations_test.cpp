@@ -1,4 +1,4 @@
-// Many operations of one step, each of its own object.
+// Many operations of one edit, each of its own object.
 #include <string>
 #include <vector>
 

@@ -408,7 +408,7 @@ TEST_CASE("a curve is scaled in every number, and nowhere else", "[document]") {
     CHECK_THAT(scaled.value(frame)[0], WithinAbs(3 * before.value(frame)[0], 1e-9));
   REQUIRE(document.undo());
   CHECK(document.text() == every_number);
-  // What does not change is no step.
+  // What does not change is no edit.
   REQUIRE(document.apply({edit::Scale{{"f.magnitude"}, 1}}));
   CHECK_FALSE(document.can_undo());
 }

@@ -1,5 +1,5 @@
 // Random operations on random scenes. Whatever is done: bytes that no edit names stay, values that
-// no edit is for stay, and steps can be taken back and made again to the byte.
+// no edit is for stay, and edits can be taken back and made again to the byte.
 
 #include <algorithm>
 #include <cmath>
@@ -254,7 +254,7 @@ void run(unsigned seed, int operations, Counts& counts) {
   }
   SceneDocument& document = *opened;
   ++counts.scenes;
-  std::vector<std::string> texts = {first};  // after each step
+  std::vector<std::string> texts = {first};  // after each edit
   SceneValues values(document.scene());
   for (int k = 0; k < operations; ++k) {
     const Operation operation = RandomOperation(document.scene(), chance).make();
@@ -298,13 +298,13 @@ void run(unsigned seed, int operations, Counts& counts) {
     if (SceneValues(*again) != values) FAIL("the text is not the scene");
   }
   const std::string last = document.text();
-  for (std::size_t step = texts.size(); step-- > 1;) {
-    if (document.text() != texts[step]) FAIL("a step was not taken back");
-    if (!document.undo()) FAIL("a step cannot be taken back");
+  for (std::size_t edit = texts.size(); edit-- > 1;) {
+    if (document.text() != texts[edit]) FAIL("an edit was not taken back");
+    if (!document.undo()) FAIL("an edit cannot be taken back");
   }
   if (document.can_undo() || document.text() != first) FAIL("not the first bytes");
   while (document.can_redo())
-    if (!document.redo()) FAIL("a step cannot be made again");
+    if (!document.redo()) FAIL("an edit cannot be made again");
   if (document.text() != last || SceneValues(document.scene()) != values)
     FAIL("not the last bytes");
 }

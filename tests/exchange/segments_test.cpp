@@ -19,7 +19,7 @@ double value_of(const Segments& segments, double frame) {
   return curve_of(segment).value(frame)[0];
 }
 
-TEST_CASE("pieces are the curve between its keys", "[exchange][pieces]") {
+TEST_CASE("segments are the curve between its keys", "[exchange][segments]") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Whim whim(seed);
     const auto curve = Curve<1>::make(whim.keys(6));
@@ -40,7 +40,7 @@ TEST_CASE("pieces are the curve between its keys", "[exchange][pieces]") {
   }
 }
 
-TEST_CASE("copies that are written out are those that the curve shows", "[exchange][pieces]") {
+TEST_CASE("copies that are written out are those that the curve shows", "[exchange][segments]") {
   const auto kind = GENERATE(OutsideKind::Repeat, OutsideKind::RepeatOffset, OutsideKind::Mirror);
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     Whim whim(seed);
@@ -71,7 +71,7 @@ TEST_CASE("copies that are written out are those that the curve shows", "[exchan
   }
 }
 
-TEST_CASE("a joint of copies has the value of the nearer one", "[exchange][pieces]") {
+TEST_CASE("a joint of copies has the value of the nearer one", "[exchange][segments]") {
   CurveKeys<1> keys{.keys = {key(0, 1, of_segment(SegmentKind::Linear)), key(10, 5)}};
   keys.before.kind = keys.after.kind = OutsideKind::Repeat;
   const Curve<1> curve = make(keys);
@@ -81,7 +81,7 @@ TEST_CASE("a joint of copies has the value of the nearer one", "[exchange][piece
     CHECK(segments->values[k] == curve.value(segments->frames[k])[0]);
 }
 
-TEST_CASE("parts of a piece are the piece", "[exchange][pieces]") {
+TEST_CASE("parts of a segment are the segment", "[exchange][segments]") {
   Whim whim(5);
   for (int n = 0; n < 300; ++n) {
     Segment segment{.kind = Segment::Kind::Bezier,
@@ -107,7 +107,7 @@ TEST_CASE("parts of a piece are the piece", "[exchange][pieces]") {
   }
 }
 
-TEST_CASE("handles longer than their segment become shorter ones", "[exchange][pieces]") {
+TEST_CASE("handles longer than their segment become shorter ones", "[exchange][segments]") {
   // Pairs of lengths on and in the ellipse with one beyond 1.
   for (const auto& [a, b] : {std::pair(1.2, 0.4), {4.0 / 3, 1.0 / 3}, {1.1, 0.15}, {0.3, 1.25}}) {
     const Segment segment{.kind = Segment::Kind::Bezier,

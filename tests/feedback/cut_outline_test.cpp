@@ -114,7 +114,7 @@ Mesh split(const Mesh& whole) {
 
 }  // namespace
 
-TEST_CASE("the outline of a piece is closed and lies where phi is 0", "[feedback][outline]") {
+TEST_CASE("the outline of a patch is closed and lies where phi is 0", "[feedback][outline]") {
   for (const Mesh& mesh : {sphere(3), square(20, 1, 0.3), square(20, 1, 0.3, true)}) {
     const bool is_flat = mesh.positions.col(1).isZero();
     const Vector3d center = is_flat ? Vector3d(0.05, 0, -0.03) : Vector3d(0.1, 1, 0.2);

@@ -142,7 +142,7 @@ TEST_CASE("the outline on a cage is drawn on the subdivided surface", "[feedback
   }
 }
 
-TEST_CASE("a report has the outline of each piece and of what each force pushes",
+TEST_CASE("a report has the outline of each patch and of what each force pushes",
           "[feedback][outline][report]") {
   Mesh mesh = sphere(3);
   // A second ball, wholly within the force's sphere.

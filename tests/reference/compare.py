@@ -6,7 +6,7 @@
 Each scene is baked once with the reference, and with `PLIANT_BINARY bake SCENE -o OUT.npy` of each
 binary; the largest difference must stay within 1e-8 of the surface's peak displacement over the run,
 1e-7 with exact motion. A surface that never moves must be exactly at rest. On a surface of triangles,
-so must every vertex that does not move, and the pieces' numbers of nodes and cells must agree. With
+so must every vertex that does not move, and the patches' numbers of nodes and cells must agree. With
 --well-posed, no scene may leave a decision to rounding (well_posed.py), nor hardly move unless its
 text has "nothing moves". Exit 1 when a scene fails.
 """
@@ -99,16 +99,16 @@ def still_difference(binary, path, name, reference, folder):
             f"such positions in all")
 
 
-def pieces_difference(told, name, reference):
-    """A message unless --regions tells the numbers of the pieces (docs/regions.md) of each frame."""
+def patches_difference(told, name, reference):
+    """A message unless --regions tells the numbers of the patches (docs/regions.md) of each frame."""
     for frame in told["frames"]:
         surface = next(s for s in frame["surfaces"] if s["name"] == name)
-        pieces = sorted((piece["insideNodes"], piece["heldNodes"], piece["cells"])
-                        for piece in surface.get("pieces", []))
+        patches = sorted((patch["insideNodes"], patch["heldNodes"], patch["cells"])
+                         for patch in surface.get("pieces", []))
         region = reference.run.regions_at.get(frame["frame"])
-        expected = sorted(region.pieces) if region else []
-        if pieces != expected:
-            return (f"surface {name}: pieces of {pieces} inside nodes, held nodes and cells at "
+        expected = sorted(region.patches) if region else []
+        if patches != expected:
+            return (f"surface {name}: patches of {patches} inside nodes, held nodes and cells at "
                     f"frame {frame['frame']} instead of {expected}")
     return None
 
@@ -159,7 +159,7 @@ def compare_binary(binary, scene, path, references, folder):
         if message is None and is_at_rest(reference):
             message = rest_difference(binary, path, name, reference, folder)
         if message is None and reference.is_triangles:
-            message = (pieces_difference(told, name, reference) or
+            message = (patches_difference(told, name, reference) or
                        still_difference(binary, path, name, reference, folder))
         if message is None:
             worst = float(np.abs(positions - reference.world).max())

@@ -122,7 +122,7 @@ class TriangleRun:
         load = transform.vector_to_object(load)
         material = triangle_material(surface, frame)
         is_static = not np.any(material["density"]) and not np.any(material["damping"])
-        assert not (region.floats and is_static), "a static piece that nothing holds"
+        assert not (region.floats and is_static), "a static patch that nothing holds"
         ratio = surface.channels["dampingRatio"]
         material["dampingRatio"] = None if ratio is None else surface.sample("dampingRatio", frame)
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}
@@ -154,7 +154,7 @@ class TriangleRun:
         if recovers:
             moved = np.maximum(np.linalg.norm(w, axis=-1), np.linalg.norm(w - before, axis=-1))
             length = 1e-6 * mesh.diagonal
-            # Those of a piece that nothing holds stay where they are.
+            # Those of a patch that nothing holds stay where they are.
             self.unsettled = np.linalg.norm(self.w, axis=-1) >= length
             self.unsettled[nodes] = moved >= length
             self.diagnostics.settle_margin = min(self.diagnostics.settle_margin,

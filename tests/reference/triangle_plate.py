@@ -112,15 +112,15 @@ class Plate:
         self.right = right
 
     def dampings(self, masses, density, ratio):
-        """Of each node that moves, by the slowest vibration of its piece; `masses` are areas."""
+        """Of each node that moves, by the slowest vibration of its patch; `masses` are areas."""
         nodes = len(masses)
         damping = np.zeros(nodes)
         density = np.broadcast_to(density, nodes)
         weights = np.zeros(len(self.right))
         weights[:nodes] = masses * density
-        count, piece_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
-        for piece in range(count):
-            own = np.nonzero(piece_of == piece)[0]
+        count, patch_of = scipy.sparse.csgraph.connected_components(self.stiffness, directed=False)
+        for patch in range(count):
+            own = np.nonzero(patch_of == patch)[0]
             omega = slowest_vibration(self.stiffness[own][:, own].tocsc(), weights[own])
             own = own[own < nodes]
             damping[own] = damping_of(ratio, density[own], omega)

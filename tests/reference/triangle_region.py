@@ -35,7 +35,7 @@ class Region:
 
     def __init__(self, mesh, phi, may_float=False):
         self.mesh, self.phi, self.is_inside = mesh, phi, phi > 0
-        self.may_float = may_float  # whether a piece moves if nothing holds it
+        self.may_float = may_float  # whether a patch moves if nothing holds it
         self.cells, self.places = [], []
         self.triangles = []  # of the cells
         self.part_corners = {}  # of the centre of a part
@@ -46,7 +46,7 @@ class Region:
                 self.cut(t, corners)
         self.places = np.array(self.places).reshape(-1, 3, 2)
         self.areas, self.normals, self.bending = bending(self.places)
-        self.sort_pieces()
+        self.sort_patches()
 
     def cut(self, t, corners):
         """Adds the part of triangle t where phi >= 0."""
@@ -104,30 +104,30 @@ class Region:
         is_node = name < len(self.mesh.rest)
         return bool(is_node and self.mesh.border != "free" and self.mesh.is_border[name])
 
-    def sort_pieces(self):
-        """Rule 5: which cells move, and the numbers of each piece."""
+    def sort_patches(self):
+        """Rule 5: which cells move, and the numbers of each patch."""
         names = sorted({name for cell in self.cells for name in cell}, key=str)
         number = {name: k for k, name in enumerate(names)}
-        piece_of = joined(len(names), ((number[cell[0]], number[name]) for cell in self.cells
+        patch_of = joined(len(names), ((number[cell[0]], number[name]) for cell in self.cells
                                        for name in cell[1:]))
-        held = {piece_of[number[name]] for name in names if self.is_held(name)}
-        self.floats = self.may_float and held != set(piece_of)
+        held = {patch_of[number[name]] for name in names if self.is_held(name)}
+        self.floats = self.may_float and held != set(patch_of)
         if self.may_float:
-            held = set(piece_of)
-        self.moving_cells = np.array([piece_of[number[cell[0]]] in held for cell in self.cells],
+            held = set(patch_of)
+        self.moving_cells = np.array([patch_of[number[cell[0]]] in held for cell in self.cells],
                                      dtype=bool)
         self.unknown_names = [name for name in names
-                              if not self.is_held(name) and piece_of[number[name]] in held]
+                              if not self.is_held(name) and patch_of[number[name]] in held]
         self.moving_nodes = [name for name in self.unknown_names
                              if not isinstance(name, tuple) and name < len(self.mesh.rest)]
-        self.pieces = []  # numbers of inside nodes, held nodes and cells
-        for piece in sorted(set(piece_of)):
-            nodes = [name for name in names if piece_of[number[name]] == piece and
+        self.patches = []  # numbers of inside nodes, held nodes and cells
+        for patch in sorted(set(patch_of)):
+            nodes = [name for name in names if patch_of[number[name]] == patch and
                      not isinstance(name, tuple) and name < len(self.mesh.rest)]
-            self.pieces.append((
+            self.patches.append((
                 sum(bool(self.is_inside[node]) for node in nodes),
                 sum(self.is_held(node) for node in nodes),
-                sum(piece_of[number[cell[0]]] == piece for cell in self.cells)))
+                sum(patch_of[number[cell[0]]] == patch for cell in self.cells)))
 
     def held_displacement(self, name, w):
         """SPEC 8, "Plate": the displacement of a held corner."""

@@ -199,7 +199,7 @@ TEST_CASE("pieces are of faces that take part", "[sampling][rest_shape]") {
       summary_of(make_rest_shape(with_shape(mesh), origin).value().shape).value();
   CHECK(told.nodes == 10);
   CHECK(told.faces == 3);
-  CHECK(told.patches == 2);
+  CHECK(told.pieces == 2);
   CHECK(told.border_edges == 9);
 }
 

@@ -164,7 +164,7 @@ TEST_CASE("frames with a damping ratio have the same bits in any order",
   CHECK(state_at(narrow, 28) == expected.back());
 }
 
-TEST_CASE("pieces of a surface have their own slowest vibrations, floating ones too",
+TEST_CASE("patches of a surface have their own slowest vibrations, floating ones too",
           "[simulation][ratio]") {
   // A flat strip of quads, free all round.
   std::vector<Vector3d> positions;

@@ -30,7 +30,7 @@ double distance(const Value<3>& a, const Value<3>& b) {
 }
 
 /// The centripetal spline by Barry and Goldman's pyramid, which has no formula in common with Path:
-/// `count` points on the piece from p[1] to p[2].
+/// `count` points on the segment from p[1] to p[2].
 Places pyramid(const Places& p, int count) {
   double t[4] = {0, 0, 0, 0};
   for (int k = 0; k < 3; ++k) t[k + 1] = t[k] + std::sqrt(distance(p[k], p[k + 1]));
@@ -62,19 +62,20 @@ double length_of(const Places& fine) {
   return all + (all - every_other) / 3;
 }
 
-/// Each piece of an open path with the waypoints that determine it; mirrored ones beyond the ends.
-std::vector<Places> pieces_of(const Places& waypoints) {
+/// Each segment of an open path with the waypoints that determine it; mirrored ones beyond the
+/// ends.
+std::vector<Places> segments_of(const Places& waypoints) {
   Places all = waypoints;
   const auto mirrored = [](const Value<3>& end, const Value<3>& next) {
     return Value<3>{2 * end[0] - next[0], 2 * end[1] - next[1], 2 * end[2] - next[2]};
   };
   all.insert(all.begin(), mirrored(waypoints[0], waypoints[1]));
   all.push_back(mirrored(waypoints.back(), waypoints[waypoints.size() - 2]));
-  std::vector<Places> pieces;
+  std::vector<Places> segments;
   for (std::size_t k = 0; k + 3 < all.size(); ++k) {
-    pieces.push_back({all.begin() + k, all.begin() + k + 4});
+    segments.push_back({all.begin() + k, all.begin() + k + 4});
   }
-  return pieces;
+  return segments;
 }
 
 TEST_CASE("a share of the way is that share of the length", "[timeline][path]") {
@@ -83,19 +84,19 @@ TEST_CASE("a share of the way is that share of the length", "[timeline][path]") 
   const Path path = Path::make(waypoints).value();
   std::vector<double> lengths;
   double total = 0;
-  for (const Places& piece : pieces_of(waypoints)) {
-    lengths.push_back(length_of(pyramid(piece, 20'000)));
+  for (const Places& segment : segments_of(waypoints)) {
+    lengths.push_back(length_of(pyramid(segment, 20'000)));
     total += lengths.back();
   }
   CHECK_THAT(path.length(), WithinRel(total, 1e-9));
-  // The waypoints are at the cumulative lengths of the pieces.
+  // The waypoints are at the cumulative lengths of the segments.
   double walked = 0;
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     CHECK(distance(path.at(walked / total), waypoints[k]) < 1e-8 * total);
     if (k < lengths.size()) walked += lengths[k];
   }
-  // And within a piece.
-  const Places fine = pyramid(pieces_of(waypoints)[2], 20'000);
+  // And within a segment.
+  const Places fine = pyramid(segments_of(waypoints)[2], 20'000);
   const double before = lengths[0] + lengths[1];
   for (const std::size_t k : {2000, 7000, 11'000, 19'998}) {
     const double here = before + length_of({fine.begin(), fine.begin() + k + 1});

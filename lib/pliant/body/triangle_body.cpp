@@ -325,7 +325,7 @@ Result<void> TriangleBody::solve(const BodyInputs& inputs) {
     if (!dynamics) return fail(dynamics.error());
     if (!patch.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {
       return fail(ErrorCode::SolverFailed,
-                  "nothing holds the piece with node " +
+                  "nothing holds the patch with node " +
                       std::to_string(selection.level_set.nodes[patch.points[0]]) +
                       ", which is static: give it a density or a damping");
     }
@@ -349,7 +349,7 @@ Result<void> TriangleBody::solve(const BodyInputs& inputs) {
       Error error = next.error();
       const int node = selection.level_set.nodes[patch.points[0]];
       if (error.code == ErrorCode::SolverFailed) {
-        error.message += ", on the piece with node " + std::to_string(node);
+        error.message += ", on the patch with node " + std::to_string(node);
       }
       return fail(std::move(error));
     }

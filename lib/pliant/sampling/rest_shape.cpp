@@ -377,8 +377,7 @@ std::optional<SurfaceSummary> summary_of(const RestShape& shape) {
       .nodes = surface.node_count(), .faces = surface.face_count(), .unit = surface.unit};
   summary.border_edges =
       static_cast<int>(std::count(surface.edge_sides.begin(), surface.edge_sides.end(), 1));
-  for (const int patch : patches_of(surface))
-    summary.patches = std::max(summary.patches, patch + 1);
+  for (const int piece : pieces_of(surface)) summary.pieces = std::max(summary.pieces, piece + 1);
   return summary;
 }
 

@@ -68,7 +68,7 @@ struct RestShape {
 struct SurfaceSummary {
   int nodes = 0;
   int faces = 0;                        ///< that take part
-  int patches = 0;                      ///< faces joined by shared corners
+  int pieces = 0;                       ///< faces joined by shared corners
   int border_edges = 0;                 ///< edges of one face
   std::array<double, 2> unit = {1, 1};  ///< the lengths that count as 1 along u and v [length/uv]
 };

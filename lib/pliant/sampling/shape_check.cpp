@@ -13,19 +13,19 @@
 namespace pliant {
 namespace {
 
-// The first node of a patch without a border that holds it; none: all are held.
+// The first node of a piece without a border that holds it; none: all are held.
 std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds) {
-  const std::vector<int> patches = patches_of(surface);
-  std::vector<bool> is_held(patches.size());  // by patch
+  const std::vector<int> pieces = pieces_of(surface);
+  std::vector<bool> is_held(pieces.size());  // by piece
   for (int face = 0; face < surface.face_count() && border_holds; ++face) {
     const bool has_border = std::ranges::any_of(
         surface.edges_of(face), [&](int edge) { return surface.edge_sides[edge] == 1; });
-    if (has_border) is_held[patches[surface.nodes_of(face).front()]] = true;
+    if (has_border) is_held[pieces[surface.nodes_of(face).front()]] = true;
   }
   const auto loose =
-      std::ranges::find_if(patches, [&](int patch) { return patch >= 0 && !is_held[patch]; });
-  if (loose == patches.end()) return {};
-  return static_cast<int>(loose - patches.begin());
+      std::ranges::find_if(pieces, [&](int piece) { return piece >= 0 && !is_held[piece]; });
+  if (loose == pieces.end()) return {};
+  return static_cast<int>(loose - pieces.begin());
 }
 
 // SPEC 9, "Whole-body motion".

@@ -123,7 +123,7 @@ TEST_CASE("each side of a cell has its slope, or it is given", "[region][surface
   CHECK(std::all_of(uses.begin(), uses.end(), [](int count) { return count == 2; }));
 }
 
-TEST_CASE("spheres that do not meet cut out pieces", "[region][surface]") {
+TEST_CASE("spheres that do not meet cut out patches", "[region][surface]") {
   const Cut cut(square(20, 1, 0.2), {ball({-0.25, 0, 0}, 0.15), ball({0.25, 0, 0}, 0.15)});
   CHECK(cut.patches.size() == 2);
   const Cut joined(square(20, 1, 0.2), {ball({-0.1, 0, 0}, 0.15), ball({0.1, 0, 0}, 0.15)});

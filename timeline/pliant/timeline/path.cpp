@@ -104,14 +104,14 @@ Checked<Path> Path::make(std::vector<Value<3>> waypoints, bool is_closed) {
   path.waypoints_ = std::move(waypoints);
   path.is_closed_ = is_closed;
   for (std::size_t k = 0; k + (is_closed ? 0 : 1) < count; ++k) {
-    path.add_piece(k, (k + 1) % count, rates[k], rates[(k + 1) % count]);
+    path.add_segment(k, (k + 1) % count, rates[k], rates[(k + 1) % count]);
   }
   return path;
 }
 
-// Adds the two halves of a piece and measures them.
-void Path::add_piece(std::size_t from, std::size_t to, const Value<3>& rate_from,
-                     const Value<3>& rate_to) {
+// Adds the two halves of a segment and measures them.
+void Path::add_segment(std::size_t from, std::size_t to, const Value<3>& rate_from,
+                       const Value<3>& rate_to) {
   const double span = std::sqrt(distance(waypoints_[from], waypoints_[to]));
   Value<3> start_rate, end_rate;
   for (std::size_t c = 0; c < 3; ++c) {

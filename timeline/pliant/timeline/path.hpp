@@ -14,10 +14,10 @@ namespace pliant {
 /// A smooth path through points in space, parametrised by arc length: an object that follows it
 /// stays on it for any timing. An immutable value, safe to share between threads.
 ///
-/// Between two waypoints it is a piece of the centripetal Catmull-Rom spline (docs/timeline.md, eq.
-/// 24): it passes through every waypoint, is continuous in direction, and never has a loop or cusp
-/// between two waypoints. Moving one waypoint changes only the four pieces around it. An open path
-/// starts and ends along its first and last chord.
+/// Between two waypoints it is a segment of the centripetal Catmull-Rom spline (docs/timeline.md,
+/// eq. 24): it passes through every waypoint, is continuous in direction, and never has a loop or
+/// cusp between two waypoints. Moving one waypoint changes only the four segments around it. An
+/// open path starts and ends along its first and last chord.
 class Path {
  public:
   static constexpr std::size_t least_waypoints = 3;
@@ -42,20 +42,20 @@ class Path {
   }
 
  private:
-  /// Half of a piece between two waypoints, counted from one of them: q in [0, 1/2].
+  /// Half of a segment between two waypoints, counted from one of them: q in [0, 1/2].
   using Half = std::array<timeline::Cubic, 3>;
 
   /// A part of a half so short that one quadrature gives the length of any part of it.
   struct Stretch {
     std::size_t half = 0;
     double from = 0;   ///< q at its start
-    double to = 0.5;   ///< q at its end, which is less in the second half of a piece
+    double to = 0.5;   ///< q at its end, which is less in the second half of a segment
     double start = 0;  ///< length of the path up to here [length]
   };
 
   Path() = default;
-  void add_piece(std::size_t from, std::size_t to, const Value<3>& rate_from,
-                 const Value<3>& rate_to);
+  void add_segment(std::size_t from, std::size_t to, const Value<3>& rate_from,
+                   const Value<3>& rate_to);
   void measure(std::size_t half, double from, double to, int depth);
   double length_between(std::size_t half, double from, double to) const;
   double q_at(const Stretch& stretch, double walked, double whole) const;

@@ -366,14 +366,14 @@ TriangleSurface posed(TriangleSurface surface, const Field& nodes) {
   return surface;
 }
 
-std::vector<int> patches_of(const TriangleSurface& surface) {
-  std::vector<int> patches(static_cast<std::size_t>(surface.node_count()), -1);
+std::vector<int> pieces_of(const TriangleSurface& surface) {
+  std::vector<int> pieces(static_cast<std::size_t>(surface.node_count()), -1);
   std::vector<bool> is_passed(static_cast<std::size_t>(surface.face_count()));
   std::vector<int> open;
   int count = 0;
   for (int first = 0; first < surface.node_count(); ++first) {
-    if (patches[first] >= 0 || surface.faces_of(first).empty()) continue;
-    patches[first] = count;
+    if (pieces[first] >= 0 || surface.faces_of(first).empty()) continue;
+    pieces[first] = count;
     open.push_back(first);
     while (!open.empty()) {
       const int node = open.back();
@@ -382,15 +382,15 @@ std::vector<int> patches_of(const TriangleSurface& surface) {
         if (is_passed[face]) continue;
         is_passed[face] = true;
         for (const int other : surface.nodes_of(face)) {
-          if (patches[other] >= 0) continue;
-          patches[other] = count;
+          if (pieces[other] >= 0) continue;
+          pieces[other] = count;
           open.push_back(other);
         }
       }
     }
     ++count;
   }
-  return patches;
+  return pieces;
 }
 
 }  // namespace pliant

@@ -71,9 +71,9 @@ Result<TriangleSurface> make_surface(const Mesh& mesh, const MeshReading& readin
 Result<TriangleSurface> surface_of_nodes(const Mesh& mesh, std::vector<int> vertex_nodes,
                                          Field rest, const StopRequest& should_stop = {});
 
-/// #nodes: the patch of each, which are faces joined by shared corners, counted in the order of
-/// their first nodes; -1: no face of the node takes part.
-std::vector<int> patches_of(const TriangleSurface& surface);
+/// #nodes: the piece of the mesh that each belongs to, faces joined by shared corners, counted in
+/// the order of their first nodes; -1: no face of the node takes part.
+std::vector<int> pieces_of(const TriangleSurface& surface);
 
 /// The same surface with its nodes in other places (#nodes x 3). Its triangles keep their shapes.
 TriangleSurface posed(TriangleSurface surface, const Field& nodes);
