@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "pliant/core/elementary.hpp"
 #include "pliant/core/expects.hpp"
-#include "pliant/exchange/fit.hpp"
-#include "pliant/timeline/edit/edit.hpp"
+#include "pliant/exchange/segment_cubics.hpp"
 
 namespace pliant::exchange {
 namespace {
@@ -82,15 +79,6 @@ std::string_view name_of(Ease ease) {
   constexpr std::string_view names[] = {"sine", "quad", "cubic", "quart",  "quint",
                                         "expo", "circ", "back",  "bounce", "elastic"};
   return names[static_cast<int>(ease)];
-}
-
-/// How many cubics a segment becomes at most. More keys a frame than these are of no use to anyone
-/// who looks at it, such as those of an elastic with many periods in each frame.
-std::size_t most_cubics(double length) {
-  constexpr double per_frame = 16;
-  constexpr double for_short_ones = 1024;
-  return static_cast<std::size_t>(
-      std::clamp(per_frame * length, for_short_ones, static_cast<double>(most_fitted)));
 }
 
 std::optional<Error> beyond_bounds(const Segments& segments) {
@@ -374,105 +362,29 @@ class Converter {
     if (!is_cut && abilities_.has_easing && abilities_.has_easing(segment)) return {segment};
     if (segment.from == segment.to) return {level_of(segment)};
     const std::string name = fmt::format("{} easing", name_of(segment.easing.ease));
-    if (auto parts = cubics_of(segment)) {
+    if (auto parts = exact_cubics(segment)) {
       if (parts->size() > 1) losses_.add(name, "became", frame_of(segment), parts->size(), 0, true);
       return *std::move(parts);
     }
     if (segment.easing.ease == Ease::Circ && abilities_.has_long_arms)
-      return arcs_of(segment, name);
+      return with_loss(arcs_of(segment, tolerance_), segment, name);
     return fitted(segment, name);
+  }
+
+  std::vector<Segment> fitted(const Segment& segment, const std::string& name) {
+    auto cubics = fitted_cubics(segment, tolerance_, should_stop_);
+    return cubics ? with_loss(*std::move(cubics), segment, name) : std::vector{segment};
+  }
+
+  /// Tells what became of a segment.
+  std::vector<Segment> with_loss(Cubics cubics, const Segment& segment, const std::string& name) {
+    losses_.add(name, cubics.are_close ? "became" : "changed too fast and became",
+                frame_of(segment), cubics.segments.size(), cubics.deviation, false);
+    return std::move(cubics.segments);
   }
 
   double frame_of(const Segment& segment) const {
     return segment.key < author_frames_.size() ? author_frames_[segment.key] : segment.start;
-  }
-
-  /// The exact cubics of an easing that consists of some.
-  static std::optional<std::vector<Segment>> cubics_of(const Segment& segment) {
-    const Curve<1> curve = curve_of(segment);
-    const Segment whole = cubic_segment(segment.start, segment.end, segment.from, segment.to,
-                                        slope_at_start(segment), slope_at_end(segment));
-    const bool is_cubic = segment.easing.side != EaseSide::InOut &&
-                          (segment.easing.ease == Ease::Quad ||
-                           segment.easing.ease == Ease::Cubic || segment.easing.ease == Ease::Back);
-    if (is_cubic) {
-      std::vector<Segment> one = {whole};
-      one[0].key = segment.key;
-      return one;
-    }
-    const auto inserted = insert_key(curve, segment.start + segment.length() / 2);
-    if (!inserted) return {};
-    std::vector<Segment> parts = segments_of(*inserted).segments;
-    for (Segment& part : parts) part.key = segment.key;
-    return parts;
-  }
-
-  /// A quarter of an ellipse as Bézier arcs. Source: Riškus, Approximation of a cubic Bézier curve
-  /// by circular arcs and vice versa: handles of 4/3·tan(angle/4).
-  std::vector<Segment> arcs_of(const Segment& segment, const std::string& name) {
-    std::vector<Segment> best;
-    double deviation = 0;
-    for (int count = 2; count <= 64; count *= 2) {
-      best = arcs(segment, count);
-      deviation = deviation_of(best, segment);
-      if (deviation <= 0.8 * tolerance_) break;
-    }
-    losses_.add(name, "became", frame_of(segment), best.size(), deviation, false);
-    return best;
-  }
-
-  static std::vector<Segment> arcs(const Segment& segment, int count) {
-    if (segment.easing.side == EaseSide::InOut) {
-      const double middle = segment.start + segment.length() / 2;
-      const double half = segment.from + (segment.to - segment.from) / 2;
-      std::vector<Segment> parts =
-          quarter(segment, segment.start, middle, segment.from, half, count, true);
-      for (Segment& part : quarter(segment, middle, segment.end, half, segment.to, count, false))
-        parts.push_back(part);
-      return parts;
-    }
-    return quarter(segment, segment.start, segment.end, segment.from, segment.to, count,
-                   segment.easing.side == EaseSide::In);
-  }
-
-  /// In: time = sin a, value = 1 - cos a; Out is the same turned by half a turn.
-  static std::vector<Segment> quarter(const Segment& segment, double start, double end, double from,
-                                      double to, int count, bool is_in) {
-    const double step = std::numbers::pi / 2 / count;
-    const double reach = 4.0 / 3 * std::tan(step / 4);
-    const double length = end - start;
-    const double rise = to - from;
-    std::vector<Segment> parts;
-    for (int k = 0; k < count; ++k) {
-      const int n = is_in ? k : count - k - 1;  // counted from the level end
-      const auto at = [&](int place) {
-        const double angle = place * step;
-        return std::pair(place == count ? 1.0 : sin_of(angle),
-                         place == count ? 0.0 : cos_of(angle));
-      };
-      const auto [near_sine, near_cosine] = at(n);
-      const auto [far_sine, far_cosine] = at(n + 1);
-      const Arm near{reach * near_cosine * length, reach * near_sine * rise};
-      const Arm far{reach * far_cosine * length, -reach * far_sine * rise};
-      Segment part{.kind = Segment::Kind::Bezier, .key = segment.key};
-      if (is_in) {
-        part.start = k == 0 ? start : start + near_sine * length;
-        part.end = k + 1 == count ? end : start + far_sine * length;
-        part.from = from + (1 - near_cosine) * rise;
-        part.to = k + 1 == count ? to : from + (1 - far_cosine) * rise;
-        part.out = near;
-        part.in = far;
-      } else {
-        part.start = k == 0 ? start : end - far_sine * length;
-        part.end = k + 1 == count ? end : end - near_sine * length;
-        part.from = k == 0 ? from : to - (1 - far_cosine) * rise;
-        part.to = to - (1 - near_cosine) * rise;
-        part.out = {far.frames, -far.value};
-        part.in = {near.frames, -near.value};
-      }
-      parts.push_back(part);
-    }
-    return parts;
   }
 
   std::vector<Segment> with_short_arms(const Segment& segment) {
@@ -508,54 +420,6 @@ class Converter {
     losses_.add("empty handle", "was lengthened", frame_of(segment), 0,
                 deviation_of({result}, segment), false);
     return result;
-  }
-
-  std::vector<Segment> fitted(const Segment& segment, const std::string& name) {
-    const Curve<1> curve = curve_of(segment);
-    // An elastic jumps at its quiet end, by up to a thousandth of its change.
-    const auto limit = [&](double end, double step, double value) {
-      const double beside = curve.value(end + step)[0];
-      const bool jumps = segment.kind == Segment::Kind::Easing &&
-                         segment.easing.ease == Ease::Elastic &&
-                         std::fabs(beside - value) > 0.1 * tolerance_;
-      return Value<1>{jumps ? beside : value};
-    };
-    const Value<1> from = limit(segment.start, 1e-8 * segment.length(), segment.from);
-    const Value<1> to = limit(segment.end, -1e-8 * segment.length(), segment.to);
-    const SmoothFunction<1> function{[&](double frame) {
-                                       if (frame == segment.start) return from;
-                                       return frame == segment.end ? to : curve.value(frame);
-                                     },
-                                     [&](double frame) { return curve.velocity(frame); },
-                                     [&](double frame) { return curve.left_velocity(frame); }};
-    const double shortest = std::min(1.0 / 1024, segment.length() / 1024);
-    const Fit<1> fit =
-        Fitter<1>(function, tolerance_, shortest, most_cubics(segment.length()), should_stop_)
-            .fit(segment.start, segment.end);
-    if (fit.is_stopped) return {segment};
-    std::vector<Segment> parts;
-    for (const FittedCubic<1>& cubic : fit.cubics) {
-      parts.push_back(cubic_segment(cubic.start, cubic.end, cubic.from[0], cubic.to[0],
-                                    cubic.from_slope[0], cubic.to_slope[0]));
-      parts.back().key = segment.key;
-    }
-    losses_.add(name, fit.is_close ? "became" : "changed too fast and became", frame_of(segment),
-                parts.size(), fit.deviation, false);
-    return parts;
-  }
-
-  static double deviation_of(const std::vector<Segment>& parts, const Segment& segment) {
-    const Curve<1> exact = curve_of(segment);
-    double largest = 0;
-    for (const Segment& part : parts) {
-      const Curve<1> curve = curve_of(part);
-      constexpr int steps = 48;
-      for (int k = 1; k < steps; ++k) {
-        const double frame = part.start + part.length() * k / steps;
-        largest = std::max(largest, std::fabs(curve.value(frame)[0] - exact.value(frame)[0]));
-      }
-    }
-    return largest;
   }
 
   Segments segments_;
