@@ -99,6 +99,11 @@ Result<void> to_file_space(const Eigen::Matrix4d& to_file, Mesh& mesh) {
   return {};
 }
 
+Field to_positions(const std::vector<double>& coordinates) {
+  return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
+      coordinates.data(), static_cast<Eigen::Index>(coordinates.size() / 3), 3);
+}
+
 int drop_invalid_uvs(Mesh& mesh) {
   std::vector<bool> is_invalid(mesh.uvs.size());
   int count = 0;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <string>
 #include <string_view>
@@ -35,9 +36,24 @@ Result<std::size_t> choose_object(std::span<const std::string_view> names,
 /// Sets what chooses each of the objects of a file.
 void set_choices(std::span<const std::string_view> meshes, std::vector<FileObject>& objects);
 
+/// What `read` makes of a mesh file; its error with the name of the file, also if memory is short.
+template <class Read>
+auto about_mesh_file(const std::string& name, const Read& read) -> decltype(read()) {
+  try {
+    auto made = read();
+    if (!made) return fail(in_file(made.error(), name));
+    return made;
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
+  }
+}
+
 /// Transforms an object to the space of its file. Its faces are turned round if that reflects them,
 /// so that they keep their outer sides. Errors: the transform is not affine.
 Result<void> to_file_space(const Eigen::Matrix4d& to_file, Mesh& mesh);
+
+/// The positions of vertices whose x, y and z stand one after the other.
+Field to_positions(const std::vector<double>& coordinates);
 
 /// Takes (u,v) that are not finite from the corners that have them. Returns how many there were.
 int drop_invalid_uvs(Mesh& mesh);

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <cstring>
 #include <future>
-#include <new>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -288,16 +287,12 @@ template <class Read>
 auto about_file(std::string_view program, const OpenFile& file, const std::string& object,
                 int uv_set, const RunContext& context, const Read& read)
     -> decltype(read(std::string(), std::string())) {
-  const std::string& name = file.name();
-  try {
+  using Made = decltype(read(std::string(), std::string()));
+  return about_mesh_file(file.name(), [&]() -> Made {
     const auto answer = answer_about(program, file, object, uv_set, context);
-    if (!answer) return fail(in_file(answer.error(), name));
-    auto made = read(*answer, format_name(ending_of(name)));
-    if (!made) return fail(in_file(made.error(), name));
-    return made;
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
-  }
+    if (!answer) return fail(answer.error());
+    return read(*answer, format_name(ending_of(file.name())));
+  });
 }
 
 std::string_view embedded_program() {

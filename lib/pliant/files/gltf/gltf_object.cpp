@@ -74,8 +74,7 @@ class Merger {
       if (auto checked = check_sets(primitive(k)); !checked) return fail(checked.error());
     for (const std::size_t k : primitives_)
       if (auto added = add(k); !added) return fail(added.error());
-    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    mesh_.positions = to_positions(coordinates_);
     mesh_.materials = part_of(materials_.names(), 0, mesh_.face_sizes.size());
     mesh_.object = document_.nodes[object_.node].name;
     mesh_.left_out = left_out();

@@ -41,18 +41,6 @@ Result<Mesh> parse(std::string_view bytes, const ReadReference& read_reference,
   return mesh_of(*document, *object, accessors, uv_set, attributes, should_stop);
 }
 
-// What `work` returns; its error with the file's name.
-template <class Work>
-auto about_gltf(const std::string& name, const Work& work) -> decltype(work()) {
-  try {
-    auto made = work();
-    if (!made) return fail(in_file(made.error(), name));
-    return made;
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
-  }
-}
-
 std::vector<std::string> uris_in(std::string_view bytes, const StopRequest& should_stop) {
   const auto container = open_container(bytes);
   if (!container) return {};
@@ -70,7 +58,7 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
                         const ReadReference& read_reference, const std::string& object, int uv_set,
                         std::span<const std::string> attributes, const StopRequest& should_stop) {
   PLIANT_EXPECTS(uv_set >= 0 && uv_set < max_uv_sets);
-  return about_gltf(name, [&] {
+  return about_mesh_file(name, [&] {
     return parse(bytes, read_reference, {}, object, uv_set, attributes, should_stop);
   });
 }
@@ -96,7 +84,7 @@ Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_s
     const auto found = find_reference(uri, file.name(), root);
     return found ? found->string() : uri;
   };
-  return about_gltf(file.name(), [&] {
+  return about_mesh_file(file.name(), [&] {
     return parse(*bytes, read, identify, object, uv_set, attributes, should_stop);
   });
 }
@@ -104,7 +92,7 @@ Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_s
 Result<std::vector<FileObject>> gltf_objects(const fs::path& file, const StopRequest& should_stop) {
   const auto bytes = read_file(file, largest_mesh_file, should_stop);
   if (!bytes) return fail(bytes.error());
-  return about_gltf(file.string(), [&]() -> Result<std::vector<FileObject>> {
+  return about_mesh_file(file.string(), [&]() -> Result<std::vector<FileObject>> {
     const auto container = open_container(*bytes);
     if (!container) return fail(container.error());
     const auto document = read_document(container->json, Subject::Meshes, should_stop);

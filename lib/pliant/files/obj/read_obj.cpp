@@ -103,8 +103,7 @@ class ObjReader {
     left_out_.add("texture vertex (vt) that is not a number",
                   "texture vertices (vt) that are not numbers", drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
-    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    mesh_.positions = to_positions(coordinates_);
     return select(object);
   }
 

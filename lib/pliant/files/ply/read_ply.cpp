@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <new>
 #include <optional>
 #include <span>
 #include <utility>
@@ -128,8 +127,7 @@ class PlyReader {
     if (!mesh_.corner_vertices.empty()) {
       if (auto checked = check_indices(); !checked) return fail(checked.error());
     }
-    mesh_.positions = Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>(
-        coordinates_.data(), static_cast<Eigen::Index>(coordinates_.size() / 3), 3);
+    mesh_.positions = to_positions(coordinates_);
     if (mesh_.face_sizes.empty()) return invalid("the file has no faces");
     left_out_.add("(u,v) that is not a pair of numbers", "(u,v) that are not pairs of numbers",
                   drop_invalid_uvs(mesh_));
@@ -404,13 +402,7 @@ Result<Mesh> parse(std::string_view bytes, const std::string& object,
 
 Result<Mesh> parse_ply(std::string_view bytes, const std::string& name, const std::string& object,
                        std::span<const std::string> attributes, const StopRequest& should_stop) {
-  try {
-    auto mesh = parse(bytes, object, attributes, should_stop);
-    if (!mesh) return fail(in_file(mesh.error(), name));
-    return mesh;
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::OutOfMemory, "the mesh does not fit in memory", name);
-  }
+  return about_mesh_file(name, [&] { return parse(bytes, object, attributes, should_stop); });
 }
 
 Result<Mesh> read_ply(const std::filesystem::path& file, const std::string& object,
