@@ -1,7 +1,6 @@
 #include "pliant/body/grid_body.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -15,10 +14,6 @@
 
 namespace pliant {
 namespace {
-
-double length(const Eigen::RowVector3d& a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-}
 
 // Tangents apply to the sides at the ends of the whole region, which a ring does not have; SPEC 5.
 EdgeTangents tangents_of(const Grid& grid, const Patch& patch, const Region& region,
@@ -390,8 +385,8 @@ void GridBody::mark_unsettled() {
   for_each_moved([&](const PatchSolve& one, int i, int j) {
     const int node = grid_.node_round(i, j);
     const auto position = work_.next_positions.row(node);
-    const double displacement = length(position - rest_.row(node));
-    const double motion = length(position - state_.positions.row(node));
+    const double displacement = length_of(position - rest_.row(node));
+    const double motion = length_of(position - state_.positions.row(node));
     const double larger = std::max(displacement, motion);
     state_.unsettled[static_cast<std::size_t>(node)] = larger > 0 && larger >= one.settling_length;
   });

@@ -1,7 +1,6 @@
 #include "pliant/body/recovery.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/region/closed_boxes.hpp"
@@ -77,8 +76,7 @@ double settling_length(const Grid& grid, const Field& rest, const Region& region
       });
     }
   }
-  const Eigen::RowVector3d extent = high - low;
-  return 1e-6 * std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
+  return 1e-6 * length_of(high - low);
 }
 
 }  // namespace pliant

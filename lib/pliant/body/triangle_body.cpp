@@ -1,7 +1,6 @@
 #include "pliant/body/triangle_body.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -26,10 +25,6 @@ std::vector<bool> border_nodes(const TriangleSurface& surface) {
     }
   }
   return is_border;
-}
-
-double length_of(const Eigen::RowVector3d& a) {
-  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
 SolverChoice factor_of(SolverChoice choice) {

@@ -1,7 +1,5 @@
 #include "pliant/core/field.hpp"
 
-#include <cmath>
-
 namespace pliant {
 
 bool are_equal(const Field& a, const Field& b) { return a.rows() == b.rows() && a == b; }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <Eigen/Core>
 
 namespace pliant {
@@ -12,6 +14,11 @@ using Field = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 /// Whether two fields have the same rows, of whatever count.
 bool are_equal(const Field& a, const Field& b);
+
+/// The length of a row of a field. A fixed order of its terms.
+inline double length_of(const Eigen::RowVector3d& a) {
+  return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+}
 
 /// The longest vector of a field.
 struct LongestVector {

@@ -1,7 +1,6 @@
 #include "pliant/sampling/animated_shape.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -42,8 +41,7 @@ bool counts_up(const std::vector<int>& numbers) {
 }
 
 double diagonal_of(const Field& positions) {
-  const Eigen::RowVector3d extent = positions.colwise().maxCoeff() - positions.colwise().minCoeff();
-  return std::sqrt(extent[0] * extent[0] + extent[1] * extent[1] + extent[2] * extent[2]);
+  return length_of(positions.colwise().maxCoeff() - positions.colwise().minCoeff());
 }
 
 }  // namespace
@@ -90,9 +88,8 @@ Result<void> AnimatedShape::check_sample(int number, const Field& positions) con
   const double most = one_node * diagonal_of(positions);
   for (std::size_t vertex = 0; vertex < nodes_.size(); ++vertex) {
     const int lowest = nodes_[vertex] >= 0 ? lowest_[nodes_[vertex]] : static_cast<int>(vertex);
-    const Eigen::RowVector3d way =
-        positions.row(static_cast<Eigen::Index>(vertex)) - positions.row(lowest);
-    const double apart = std::sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+    const double apart =
+        length_of(positions.row(static_cast<Eigen::Index>(vertex)) - positions.row(lowest));
     if (apart <= most) continue;
     return refuse(fmt::format("vertices {} and {} are one node of the grid, but {} apart",
                               lowest + first_index_, static_cast<int>(vertex) + first_index_,
