@@ -47,4 +47,11 @@ class ThreadPool {
   std::vector<std::jthread> threads_;  // last: they use all of the above, and are stopped first
 };
 
+/// The same by some threads; null: by the calling one alone, in order.
+template <class Work>
+void for_each(ThreadPool* threads, std::size_t count, const Work& work) {
+  if (threads) return threads->for_each(count, std::ref(work));
+  for (std::size_t k = 0; k < count; ++k) work(k);
+}
+
 }  // namespace pliant

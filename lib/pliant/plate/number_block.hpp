@@ -27,4 +27,33 @@ class NumberBlock {
   std::size_t count_ = 0;
 };
 
+/// Hands out arrays of one block, each on its own cache line; with a null block it only counts.
+class Carver {
+ public:
+  explicit Carver(double* block) : block_(block) {}
+
+  double* take(std::size_t count) {
+    double* const place = block_ ? block_ + used_ : nullptr;
+    used_ += (count + unit - 1) / unit * unit;
+    return place;
+  }
+
+  /// With an odd number of lines after whole pages, so that arrays that are read together do not
+  /// compete for the same cache sets.
+  double* take_apart(std::size_t count) {
+    double* const place = take(count);
+    if (count >= 512) used_ += (512 - used_ % 512) % 512 + unit * (1 + 2 * (arrays_++ % 29));
+    return place;
+  }
+
+  std::size_t used() const { return used_; }
+
+ private:
+  static constexpr std::size_t unit = NumberBlock::line / sizeof(double);
+
+  double* block_;
+  std::size_t used_ = 0;
+  std::size_t arrays_ = 0;  // that are apart
+};
+
 }  // namespace pliant

@@ -89,11 +89,7 @@ struct SparseMotion::FactorsItem final : Shelf::Item {
 template <class Work>
 void SparseMotion::for_each_pole(const Work& work) {
   // A small matrix is not worth a thread.
-  if (context_.threads && pattern_->size() > 2000) {
-    context_.threads->for_each(pole_count, work);
-  } else {
-    for (std::size_t pole = 0; pole < pole_count; ++pole) work(pole);
-  }
+  pliant::for_each(pattern_->size() > 2000 ? context_.threads : nullptr, pole_count, work);
 }
 
 Result<void> SparseMotion::prepare(MovingMatrix matrix) try {

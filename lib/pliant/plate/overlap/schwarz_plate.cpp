@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <new>
 
@@ -48,11 +47,8 @@ void apply_to_run(const StencilWeights& weights, const double* p, long M, long c
 template <class Work>
 void SchwarzPlate::for_each(std::size_t count, const Work& work) {
   constexpr long worth_a_thread = 10'000;  // nodes
-  if (context_.threads && system_.outline.grid().node_count() > worth_a_thread) {
-    context_.threads->for_each(count, std::ref(work));
-  } else {
-    for (std::size_t k = 0; k < count; ++k) work(k);
-  }
+  const bool is_worth = system_.outline.grid().node_count() > worth_a_thread;
+  pliant::for_each(is_worth ? context_.threads : nullptr, count, work);
 }
 
 // Calls work(component, block) for all blocks of rows and all components that are not solved yet.

@@ -18,25 +18,6 @@ constexpr std::size_t most_tables = 2;
 
 ComplexNumber number_of(Complex a) { return {a.re, a.im}; }
 
-// Hands out arrays of one block, each on its own cache line; with a null block it only counts.
-class Carver {
- public:
-  explicit Carver(double* block) : block_(block) {}
-
-  double* take(long count) {
-    constexpr std::size_t unit = NumberBlock::line / sizeof(double);
-    double* const place = block_ ? block_ + used_ : nullptr;
-    used_ += (static_cast<std::size_t>(count) + unit - 1) / unit * unit;
-    return place;
-  }
-
-  std::size_t used() const { return used_; }
-
- private:
-  double* block_;
-  std::size_t used_ = 0;
-};
-
 }  // namespace
 
 // Lays out the workspace; with a null block it only counts.

@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <new>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/stencil.hpp"
 
@@ -26,46 +24,43 @@ int modes_of(int parity, int length) {
 
 }  // namespace
 
-// Hands out arrays of one block, each on its own cache line; with a null block it only counts.
-class SpectralPlate::Carver {
- public:
-  explicit Carver(double* block) : block_(block) {}
-
-  double* take(std::size_t count) {
-    const std::size_t begin = used_;
-    // Adds an odd number of lines to whole pages, so that arrays that are read together do not
-    // compete for the same cache sets.
-    constexpr std::size_t unit = NumberBlock::line / sizeof(double);
-    used_ += (count + unit - 1) / unit * unit;
-    if (count >= 512) used_ += (512 - used_ % 512) % 512 + unit * (1 + 2 * (arrays_++ % 29));
-    return block_ ? block_ + begin : nullptr;
-  }
-
-  std::size_t used() const { return used_; }
-
- private:
-  double* block_;
-  std::size_t used_ = 0;
-  std::size_t arrays_ = 0;
-};
-
 SpectralPlate::SpectralPlate(const RunContext& context)
     : context_(context), kernels_(kernels_of_width(context.most_lanes)), memory_(context.memory) {}
 
-constexpr long worth_a_thread = 10'000;  // nodes
-
-// Runs tasks that write different numbers. On a small plate they are not worth a thread.
+// Calls work(component, first, last, numbers) for columns [first, last) of `count`, all of them, of
+// each component that moves; with the numbers that a task works in. Columns are independent, so no
+// bit depends on how they are divided.
 template <class Work>
-void SpectralPlate::for_each(std::size_t count, const Work& work) {
-  if (context_.threads && long{columns_} * rows_ > worth_a_thread) {
-    context_.threads->for_each(count, std::ref(work));
-  } else {
-    for (std::size_t k = 0; k < count; ++k) work(k);
-  }
+void SpectralPlate::for_columns(int count, const Work& work) {
+  const std::size_t tasks = task_count();
+  const std::size_t units = static_cast<std::size_t>(filled_up(count)) / row_unit;
+  const auto begin = [&](std::size_t task) {
+    return std::min(count, static_cast<int>(units * task / tasks) * row_unit);
+  };
+  for_each(tasks, [&](std::size_t task) {
+    for (int component = 0; component < 3; ++component) {
+      if (is_still_[component]) continue;
+      work(component, begin(task), begin(task + 1), work_ + task * work_size_);
+    }
+  });
+}
+
+TransformView SpectralPlate::transform_of(long row_stride) const {
+  TransformView view = transform_;
+  view.across_stride = is_along_u_ ? row_stride : 1;
+  view.along_stride = is_along_u_ ? 1 : row_stride;
+  return view;
+}
+
+CoefficientsView SpectralPlate::coefficients_of(double* (Parity::*numbers)[3],
+                                                int component) const {
+  CoefficientsView coefficients;
+  for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*numbers)[component];
+  return coefficients;
 }
 
 void SpectralPlate::carve(Carver& carver) {
-  const auto take = [&](long count) { return carver.take(static_cast<std::size_t>(count)); };
+  const auto take = [&](std::size_t count) { return carver.take_apart(count); };
   const int lengths[2] = {plans_[0].length(), plans_[1].length()};
   for (int direction = 0; direction < 2; ++direction) {
     for (int parity = 0; parity < 2; ++parity) {
@@ -86,8 +81,6 @@ void SpectralPlate::carve(Carver& carver) {
   const int width = transform_.even_column + filled_up(even_modes(lengths[0]));
   transform_.between_pitch = pitch_of(width);
 
-  const std::size_t tasks =
-      context_.threads ? static_cast<std::size_t>(context_.threads->thread_count()) : 1;
   work_size_ = 0;
   for (const SinePlan& plan : plans_) {
     const SineView view = plan.view();
@@ -95,7 +88,7 @@ void SpectralPlate::carve(Carver& carver) {
     work_size_ = std::max(work_size_, static_cast<std::size_t>(size));
   }
   work_size_ = (work_size_ + 511) / 512 * 512 + row_unit;
-  work_ = carver.take(tasks * work_size_);
+  work_ = carver.take_apart(task_count() * work_size_);
   for (double*& between : between_) {
     between = take(long{lengths[1] - 1} * transform_.between_pitch);
   }
@@ -206,7 +199,7 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   const bool is_pinned_across = is_along_u_ ? is_pinned_v : is_pinned_u;
   const double beta = is_along_u_ ? edge_u : edge_v;
   const double delta = is_pinned_across ? 0 : is_along_u_ ? edge_v : edge_u;
-  if (long{columns_} * rows_ > worth_a_thread && context_.is_stopped()) return interrupted();
+  if (is_large() && context_.is_stopped()) return interrupted();
   int failed[4];
   for_each(4, [&](std::size_t k) {
     Parity& parity = parities_[k];
@@ -289,53 +282,25 @@ ComponentView SpectralPlate::component_of(int k, int component) const {
 }
 
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3]) {
-  TransformView view = transform_;
-  view.across_stride = is_along_u_ ? field.row_stride : 1;
-  view.along_stride = is_along_u_ ? 1 : field.row_stride;
-  const auto tasks = chunk_count();
-  for_each(tasks, [&](std::size_t task) {
-    const auto [first, last] = chunk(task, plans_[1].length() - 1);
-    for (int component = 0; component < 3; ++component) {
-      if (is_still_[component]) continue;
-      kernels_.in_across(view, field.first + component * field.component_stride, first, last,
-                         between_[component], work_ + task * work_size_);
-    }
+  const TransformView view = transform_of(field.row_stride);
+  for_columns(plans_[1].length() - 1, [&](int component, int first, int last, double* work) {
+    kernels_.in_across(view, field.first + component * field.component_stride, first, last,
+                       between_[component], work);
   });
-  for_each(tasks, [&](std::size_t task) {
-    const auto [first, last] = chunk(task, between_width());
-    for (int component = 0; component < 3; ++component) {
-      if (is_still_[component]) continue;
-      CoefficientsView coefficients;
-      for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*to)[component];
-      kernels_.in_along(view, between_[component], first, last, coefficients,
-                        work_ + task * work_size_);
-    }
+  for_columns(between_width(), [&](int component, int first, int last, double* work) {
+    kernels_.in_along(view, between_[component], first, last, coefficients_of(to, component), work);
   });
 }
 
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field) {
-  TransformView view = transform_;
-  view.across_stride = is_along_u_ ? field.row_stride : 1;
-  view.along_stride = is_along_u_ ? 1 : field.row_stride;
-  const auto tasks = chunk_count();
-  for_each(tasks, [&](std::size_t task) {
-    const auto [first, last] = chunk(task, between_width());
-    for (int component = 0; component < 3; ++component) {
-      if (is_still_[component]) continue;
-      CoefficientsView coefficients;
-      for (int k = 0; k < 4; ++k) coefficients.of[k] = (parities_[k].*from)[component];
-      kernels_.out_along(view, coefficients, first, last, between_[component],
-                         work_ + task * work_size_);
-    }
+  const TransformView view = transform_of(field.row_stride);
+  for_columns(between_width(), [&](int component, int first, int last, double* work) {
+    kernels_.out_along(view, coefficients_of(from, component), first, last, between_[component],
+                       work);
   });
-  for_each(tasks, [&](std::size_t task) {
-    const auto [first, last] = chunk(task, plans_[1].length() - 1);
-    for (int component = 0; component < 3; ++component) {
-      if (is_still_[component]) continue;
-      kernels_.out_across(view, between_[component], first, last,
-                          field.first + component * field.component_stride,
-                          work_ + task * work_size_);
-    }
+  for_columns(plans_[1].length() - 1, [&](int component, int first, int last, double* work) {
+    kernels_.out_across(view, between_[component], first, last,
+                        field.first + component * field.component_stride, work);
   });
 }
 
@@ -392,18 +357,8 @@ SpectralPlate::Blocks SpectralPlate::moving_blocks() const {
   return blocks;
 }
 
-// The number of parts in which a field is transformed. Columns are independent, so no bit depends
-// on it.
-std::size_t SpectralPlate::chunk_count() const {
+std::size_t SpectralPlate::task_count() const {
   return context_.threads ? static_cast<std::size_t>(context_.threads->thread_count()) : 1;
-}
-
-SpectralPlate::Range SpectralPlate::chunk(std::size_t task, int count) const {
-  const std::size_t units = static_cast<std::size_t>(filled_up(count)) / row_unit;
-  const auto begin = [&](std::size_t k) {
-    return std::min(count, static_cast<int>(units * k / chunk_count()) * row_unit);
-  };
-  return {begin(task), begin(task + 1)};
 }
 
 int SpectralPlate::between_width() const {

@@ -8,6 +8,7 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/plate_problem.hpp"
@@ -91,11 +92,6 @@ class SpectralPlate {
     double* out = nullptr;       // and in the inverse transform
   };
 
-  class Carver;
-
-  struct Range {
-    int first, last;
-  };
   // Independent of the others: one component in one pair of parities.
   struct Block {
     int parity, component;
@@ -117,13 +113,20 @@ class SpectralPlate {
   bool are_equal(const ConstNodesView& one, const ConstNodesView& other) const;
   void clear(const NodesView& field, int component) const;
   Blocks moving_blocks() const;
-  std::size_t chunk_count() const;
-  Range chunk(std::size_t task, int count) const;
+  std::size_t task_count() const;
+  TransformView transform_of(long row_stride) const;
+  CoefficientsView coefficients_of(double* (Parity::*numbers)[3], int component) const;
   int between_width() const;
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3]);
   void from_sines(double* (Parity::*from)[3], const NodesView& field);
+  bool is_large() const { return long{columns_} * rows_ > 10'000; }
+  // Runs tasks that write different numbers. On a small plate they are not worth a thread.
   template <class Work>
-  void for_each(std::size_t count, const Work& work);
+  void for_each(std::size_t count, const Work& work) {
+    pliant::for_each(is_large() ? context_.threads : nullptr, count, work);
+  }
+  template <class Work>
+  void for_columns(int count, const Work& work);
 
   RunContext context_;
   const PlateKernels& kernels_;
