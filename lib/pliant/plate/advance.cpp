@@ -1,5 +1,7 @@
 #include "pliant/plate/advance.hpp"
 
+#include <utility>
+
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/rim_load.hpp"
@@ -23,7 +25,6 @@ Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& pro
   set_up.stop();
   const StageTimer solve(context.profile, Stage::Solve);
 
-  Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
   Field load = problem.load;
   subtract_rim(outline, problem.stiffness, problem.tangents, state.displacement, load);
   const Field known = interior_of(outline, load);
@@ -31,16 +32,7 @@ Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& pro
   const auto solve_step = [&](const Field& w, const Field& v) {
     return solver.solve(known + shift * w + inertia * v);
   };
-  const auto watch = [&](const Field& w) {
-    return !problem.watch || (*problem.watch)(with_interior(outline, state.displacement, w));
-  };
-  if (auto done = run_steps(context, steps, motion, solve_step, watch); !done) {
-    return fail(done.error());
-  }
-
-  state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
-  state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), motion.velocity);
-  return state;
+  return run_steps(context, steps, problem, std::move(state), solve_step);
 }
 
 }  // namespace pliant

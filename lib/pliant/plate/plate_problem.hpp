@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/field.hpp"
@@ -88,6 +89,14 @@ inline bool is_on_nodes(const PlateProblem& problem, const PlateState& state) {
   const int nodes = problem.outline.grid().node_count();
   return problem.load.rows() == nodes && state.displacement.rows() == nodes &&
          state.velocity.rows() == nodes;
+}
+
+/// The state with other rows of the interior nodes; all other nodes have no velocity.
+inline PlateState with_interior(const PlateProblem& problem, PlateState state,
+                                const Field& displacement, const Field& velocity) {
+  state.displacement = with_interior(problem.outline, std::move(state.displacement), displacement);
+  state.velocity = with_interior(problem.outline, Field::Zero(problem.load.rows(), 3), velocity);
+  return state;
 }
 
 }  // namespace pliant

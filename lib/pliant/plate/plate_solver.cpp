@@ -5,7 +5,6 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/advance.hpp"
-#include "pliant/plate/energy/advance_plastic.hpp"
 #include "pliant/plate/overlap/rectangle_cover.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"

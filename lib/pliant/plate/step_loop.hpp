@@ -5,6 +5,7 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
+#include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/time_steps.hpp"
 
 namespace pliant {
@@ -46,6 +47,19 @@ template <class Solve>
 Result<void> run_steps(const RunContext& context, const TimeSteps& steps, Motion& motion,
                        const Solve& solve) {
   return run_steps(context, steps, motion, solve, [](const Field&) { return true; });
+}
+
+/// The state of a problem after steps of its interior nodes, which its watch is told of.
+template <class Solve>
+Result<PlateState> run_steps(const RunContext& context, const TimeSteps& steps,
+                             const PlateProblem& problem, PlateState state, const Solve& solve) {
+  const Outline& outline = problem.outline;
+  Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
+  const auto watch = [&](const Field& w) {
+    return !problem.watch || (*problem.watch)(with_interior(outline, state.displacement, w));
+  };
+  if (auto done = run_steps(context, steps, motion, solve, watch); !done) return fail(done.error());
+  return with_interior(problem, std::move(state), motion.displacement, motion.velocity);
 }
 
 }  // namespace pliant

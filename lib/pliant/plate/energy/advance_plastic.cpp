@@ -1,11 +1,10 @@
-#include "pliant/plate/energy/advance_plastic.hpp"
-
 #include <functional>
 #include <utility>
 #include <vector>
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/advance.hpp"
 #include "pliant/plate/energy/plastic_plate.hpp"
 #include "pliant/plate/energy/plastic_steps.hpp"
 

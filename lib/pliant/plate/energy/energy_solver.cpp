@@ -89,7 +89,6 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
 
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                              PlateState state) override {
-    const Outline& outline = problem.outline;
     PLIANT_EXPECTS(is_on_nodes(problem, state));
     if (steps.are_exact()) return advance_exactly(problem, steps, std::move(state));
     const double dt = steps.solved_length();
@@ -98,7 +97,6 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
     set_up.stop();
     const StageTimer solving(context().profile, Stage::Solve);
     const StepTerms terms = this->terms(problem, dt, state.displacement);
-    Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
     Field right_hand_sides(terms.known.rows(), 3);
     const auto solve = [&](const Field& w, const Field& v) {
       for (int k = 0; k < 3; ++k) {
@@ -108,15 +106,7 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
       return factor_.solve_next(right_hand_sides);
     };
     factor_.begin_steps();
-    const auto watch = [&](const Field& w) {
-      return !problem.watch || (*problem.watch)(with_interior(outline, state.displacement, w));
-    };
-    if (auto done = run_steps(context(), steps, motion, solve, watch); !done) {
-      return fail(done.error());
-    }
-    state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
-    state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), motion.velocity);
-    return state;
+    return run_steps(context(), steps, problem, std::move(state), solve);
   }
 
   StepTerms terms(const PlateProblem& problem, double dt, const Field& displacement) override {
@@ -165,9 +155,7 @@ class EnergySolver final : public PlateSolver, private PreciseMatrix {
         steps, {known_forces(first, state.displacement), known_forces(problem, state.displacement)},
         w, v);
     if (!moved) return fail(moved.error());
-    state.displacement = with_interior(outline, std::move(state.displacement), w);
-    state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), v);
-    return state;
+    return with_interior(problem, std::move(state), w, v);
   }
 
   // Calls f(unknown, i, j) for the unknowns, in their order.

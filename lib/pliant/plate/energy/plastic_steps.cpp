@@ -2,20 +2,81 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "pliant/plate/energy/flowing_places.hpp"
-#include "pliant/plate/energy/secants.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 
 namespace pliant {
 namespace {
 
-using Numbers = Secants::Numbers;
+using Numbers = std::vector<double>;
+
+double dot(const PlateKernels& kernels, const Numbers& a, const Numbers& b) {
+  return kernels.dot_product(static_cast<long>(a.size()), a.data(), b.data());
+}
+void add(const PlateKernels& kernels, Numbers& to, double part, const Numbers& of) {
+  kernels.add_scaled(static_cast<long>(to.size()), to.data(), part, of.data());
+}
+
+// What a convex energy's gradient did on the last ways that were gone, by which the next way is
+// better than the one that the elastic matrix A gives: the method of Broyden, Fletcher, Goldfarb
+// and Shanno with limited memory. Source: Nocedal & Wright, Numerical Optimization (2006),
+// algorithm 7.4. Numbers are so many that vectors divide them.
+class Secants {
+ public:
+  Secants(const PlateKernels& kernels, std::size_t most) : kernels_(kernels), most_(most) {}
+
+  void clear() { secants_.clear(); }
+
+  // A way that was gone, with A times it, and what it changed of the gradient.
+  void learn(Numbers way, Numbers product, Numbers change) {
+    const double curvature = dot(kernels_, way, change);
+    // Rounding may leave nothing to learn.
+    if (!(curvature > 1e-4 * dot(kernels_, way, product))) return;
+    if (secants_.size() == most_) secants_.pop_front();
+    secants_.push_back({std::move(way), std::move(product), std::move(change), curvature});
+  }
+
+  // A way down for a gradient: first what A has to be solved for, then the way and A times it for
+  // that solution.
+  Numbers to_solve(Numbers gradient) {
+    parts_.resize(secants_.size());
+    for (std::size_t k = secants_.size(); k-- > 0;) {
+      const Secant& one = secants_[k];
+      parts_[k] = dot(kernels_, one.way, gradient) / one.curvature;
+      add(kernels_, gradient, -parts_[k], one.change);
+    }
+    return gradient;
+  }
+
+  void finish(Numbers& way, Numbers& product) const {
+    for (std::size_t k = 0; k < secants_.size(); ++k) {
+      const Secant& one = secants_[k];
+      const double part = parts_[k] - dot(kernels_, one.change, way) / one.curvature;
+      add(kernels_, way, part, one.way);
+      add(kernels_, product, part, one.product);
+    }
+  }
+
+ private:
+  struct Secant {
+    Numbers way, product, change;
+    double curvature;  // way . change
+  };
+
+  const PlateKernels& kernels_;
+  std::size_t most_;
+  std::deque<Secant> secants_;
+  std::vector<double> parts_;  // of each, in the last `to_solve`
+};
 
 // How short the last way is, as a part of the peak: conjugate gradients leave
 // (sqrt(condition) - 1)/2 of it, which is 1e-9 at most, and the solve that follows less.
@@ -148,7 +209,7 @@ class EquilibriumSteps final : public PlasticSteps {
     places_->take_from(x_, way_);
     places_->go_to(way_, flowed_);
     Numbers gradient = forces_;
-    add(gradient, -1, flowed_);
+    add(kernels_, gradient, -1, flowed_);
     double shortest = std::numeric_limits<double>::infinity();
     int since = 0;  // turns since it was shortest
     for (int turn = 0; turn < most_turns && !are_all_zero(gradient); ++turn) {
@@ -157,22 +218,22 @@ class EquilibriumSteps final : public PlasticSteps {
       if (auto solved = solve_on_places(product, way); !solved) return solved;
       secants_.finish(way, product);
       // The energy falls against the way.
-      const double start = dot(way, gradient);
-      double part = -start / (dot(way, product) - places_->look_along(way));
+      const double start = dot(kernels_, way, gradient);
+      double part = -start / (dot(kernels_, way, product) - places_->look_along(way));
       Numbers left;
       for (int tries = 1;; ++tries) {
         if (context_.is_stopped()) return interrupted();
         places_->flow_after(part, flowed_);
         left = product;
         combine(1, forces_, part, left);
-        add(left, -1, flowed_);
+        add(kernels_, left, -1, flowed_);
         // Its slope along the way is monotone: less of the way if it grows again.
-        const double slope = -dot(way, left);
+        const double slope = -dot(kernels_, way, left);
         if (!(slope > 0.5 * std::abs(start)) || tries == 30) break;
         part *= std::abs(start) / (std::abs(start) + slope);
       }
       places_->go();
-      add(forces_, part, product);
+      add(kernels_, forces_, part, product);
       const double length = std::abs(part) * longest(way, moving, peaks);
       // Of all of the way.
       combine(1 / part, left, -1 / part, gradient);
@@ -225,13 +286,6 @@ class EquilibriumSteps final : public PlasticSteps {
     const auto part = [](double length, double peak) { return length > 0 ? length / peak : 0; };
     return std::max(part(places_->longest(way, 0, moving), peaks.moving),
                     part(places_->longest(way, moving, x_.rows()), peaks.slopes));
-  }
-
-  double dot(const Numbers& a, const Numbers& b) const {
-    return kernels_.dot_product(static_cast<long>(a.size()), a.data(), b.data());
-  }
-  void add(Numbers& to, double part, const Numbers& of) const {
-    kernels_.add_scaled(static_cast<long>(to.size()), to.data(), part, of.data());
   }
 
   // b <- part_a a + part_b b.

@@ -67,9 +67,7 @@ class DirectSolver final : public PlateSolver {
         {force(problem.first_load, problem.first_tangents), force(problem.load, problem.tangents)},
         w, v);
     if (!moved) return fail(moved.error());
-    state.displacement = with_interior(outline, std::move(state.displacement), w);
-    state.velocity = with_interior(outline, Field::Zero(problem.load.rows(), 3), v);
-    return state;
+    return with_interior(problem, std::move(state), w, v);
   }
 
   SolverCounts counts() const override { return matrix_.counts() + motion_.counts(); }
