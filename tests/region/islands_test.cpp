@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "pliant/region/region.hpp"
+#include "region/select.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;

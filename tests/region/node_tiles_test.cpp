@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "pliant/region/region.hpp"
+#include "region/select.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "region/select.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;

@@ -235,14 +235,6 @@ Selection recombined(Selection selection, Combine how, std::vector<Box> others) 
   return selection;
 }
 
-Selection select_region(const Grid& grid, const PlacedNodes& nodes,
-                        std::span<const SampledForce> forces, Combine how,
-                        std::span<const int> selectors) {
-  NodeTiles tiles;
-  tiles.update(grid, nodes);
-  return reselected({}, tiles, forces, how, selectors);
-}
-
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force) {
   if (tiles.grid().is_open()) return Selecting<OpenReach>(tiles, force).boxes();
   return Selecting<ClosedReach>(tiles, force).boxes();
@@ -274,20 +266,6 @@ Selection reselected(Selection earlier, const NodeTiles& tiles,
 bool overlaps(const Grid& grid, const Region& region, const Box& force) {
   return std::any_of(region.parts.begin(), region.parts.end(),
                      [&](const Box& part) { return meet(grid, part, force); });
-}
-
-Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
-                    std::span<const SampledForce> forces, const Selection& selection,
-                    std::size_t region) {
-  const Box& box = selection.regions[region].box;
-  Field load(Eigen::Index{box.columns()} * box.rows(), 3);
-  visit_load_rows(grid, nodes, forces, selection, region, box,
-                  [&](Eigen::Index row, const Batch& part) {
-                    std::copy_n(part.x, part.count, &load(row, 0));
-                    std::copy_n(part.y, part.count, &load(row, 1));
-                    std::copy_n(part.z, part.count, &load(row, 2));
-                  });
-  return load;
 }
 
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,

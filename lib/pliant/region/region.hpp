@@ -12,22 +12,16 @@
 
 namespace pliant {
 
-/// Selects by distance, strictly less than each radius, on nodes (#nodes x 3, world space). A box
-/// over (u,v) is a box of nodes and also contains nodes that are outside every sphere: this makes
-/// the region an M x N grid. `how` forms regions from the boxes. `selectors` has for each force the
-/// index of the force whose deformation box it uses; empty: each uses its own. Requires: #nodes =
-/// grid.node_count().
-Selection select_region(const Grid& grid, const PlacedNodes& nodes,
-                        std::span<const SampledForce> forces, Combine how = Combine::Box,
-                        std::span<const int> selectors = {});
-
 /// The boxes of one force alone.
 ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force);
 
-/// Selects again on the nodes of `tiles`, in the memory of `earlier`: an earlier result, or empty.
-/// `others` are boxes that no force selects, but that are solved too. If all boxes are unchanged,
-/// so are the regions, and nothing is allocated. A program's own function is called for every node,
-/// other forces only for nodes that can change a box.
+/// Selects by distance, strictly less than each radius, on the nodes of `tiles`, in the memory of
+/// `earlier`: an earlier result, or empty. A box over (u,v) is a box of nodes and also contains
+/// nodes that are outside every sphere: this makes the region an M x N grid. `how` forms regions
+/// from the boxes. `selectors` has for each force the index of the force whose deformation box it
+/// uses; empty: each uses its own. `others` are boxes that no force selects, but that are solved
+/// too. If all boxes are unchanged, so are the regions, and nothing is allocated. A program's own
+/// function is called for every node, other forces only for nodes that can change a box.
 Selection reselected(Selection earlier, const NodeTiles& tiles,
                      std::span<const SampledForce> forces, Combine how,
                      std::span<const int> selectors = {}, std::span<const Box> others = {});
@@ -40,16 +34,11 @@ Selection recombined(Selection selection, Combine how, std::vector<Box> others =
 /// Whether a force box contains a node of the region, rim included.
 bool overlaps(const Grid& grid, const Region& region, const Box& force);
 
-/// The load of all forces that act in one region, on each node of its box (#nodes x 3, row = j *
-/// columns + i counted within the box, world space): force k acts on the nodes inside its force
-/// box. Forces are added in the given order. Requires: `selection` is the result of `select_region`
-/// for the same arguments, and contains that region.
-Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
-                    std::span<const SampledForce> forces, const Selection& selection,
-                    std::size_t region = 0);
-
-/// The same on the nodes of a box that is part of the region's box, in object space: each row times
-/// `to_object`, as in `vectors_to_object`. The result reuses the memory of `reuse`.
+/// The load of all forces that act in one region, on each node of a box that is part of the
+/// region's box (row = j * columns + i counted within it), in object space: each row times
+/// `to_object`, as in `vectors_to_object`. Force k acts on the nodes inside its force box. Forces
+/// are added in the given order. Requires: `selection` is the result of `reselected` for the same
+/// arguments, and contains that region. The result reuses the memory of `reuse`.
 Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
                     std::span<const SampledForce> forces, const Selection& selection,
                     std::size_t region, const Box& box, const Matrix3d& to_object, Field reuse);
