@@ -1,10 +1,11 @@
 #include "pliant/plate/rim_load.hpp"
 
-#include "pliant/plate/stencil.hpp"
 #include "support/catch.hpp"
+#include "support/plates.hpp"
 #include "support/unions.hpp"
 
 using namespace pliant;
+using pliant::testing::apply_stencil;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::apply_stencil;
 using pliant::testing::sampled;
 using pliant::testing::unit_grid;
 using pliant::testing::WithinAbs;

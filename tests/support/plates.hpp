@@ -31,6 +31,37 @@ inline PlateState random_state(const Grid& grid) {
   return {Field::Random(grid.node_count(), 3), Field::Random(grid.node_count(), 3)};
 }
 
+/// L w at the interior nodes (#unknowns x 3) of a field w on all nodes (#nodes x 3). Ghosts mirror
+/// the nodes beside the rim; tangents are those of rim nodes on the grid's outermost rows and
+/// columns, and at all other rim nodes the slope is 0. SPEC 4, 5; docs/model.md, eq. (4) to (7),
+/// (12). Requires: at least 3 x 3 nodes.
+inline Field apply_stencil(const Outline& outline, const Stiffness& stiffness,
+                           const EdgeTangents& tangents, const Field& w) {
+  const Grid& grid = outline.grid();
+  const Stencil<double> stencil(grid, stiffness);
+  Field result(outline.unknown_count(), 3);
+  with_steps(outline, [&](const auto& steps_at) {
+    for (int component = 0; component < 3; ++component) {
+      const EdgeGhosts ghosts(grid, tangents, component);
+      int row = 0;
+      outline.for_each_run([&](const Outline::Run& run) {
+        const int j = run.j;
+        for (int i = run.i0; i <= run.i1; ++i) {
+          const auto steps = steps_at(i, j);
+          const double* const p = w.col(component).data() + grid.node(i, j);
+          const auto near = [&](int di, int dj) { return p[steps.to(di, dj)]; };
+          const auto far = [&](int di, int dj) {
+            return is_ghost(outline, i, j, di, dj) ? p[0] + ghosts.at(i + di, j + dj)
+                                                   : near(di, dj);
+          };
+          result(row++, component) = stencil.apply(near, far);
+        }
+      });
+    }
+  });
+  return result;
+}
+
 /// The system's matrix, column by column from the stencil, independent of the assembly.
 inline Eigen::MatrixXd dense_operator(const PlateSystem& system) {
   const int n = unknown_count(system.outline);

@@ -33,7 +33,7 @@ inline double factor_at(const std::vector<double>& factors, int node) {
 }
 
 /// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped plate,
-/// where L is `apply_stencil` with rim and tangents 0. Symmetric, and positive definite when the
+/// where L is that of `Stencil` with rim and tangents 0. Symmetric, and positive definite when the
 /// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
 ///
 /// With free edges or uneven material L is K of docs/model.md, "One energy", and the shift at a

@@ -120,11 +120,4 @@ class EdgeGhosts {
   double u0_, u1_, v0_, v1_;
 };
 
-/// L w at the interior nodes (#unknowns x 3) of a field w on all nodes (#nodes x 3). Ghosts mirror
-/// the nodes beside the rim; tangents are those of rim nodes on the grid's outermost rows and
-/// columns, and at all other rim nodes the slope is 0. SPEC 4, 5; docs/model.md, eq. (4) to (7),
-/// (12). Requires: at least 3 x 3 nodes.
-Field apply_stencil(const Outline& outline, const Stiffness& stiffness,
-                    const EdgeTangents& tangents, const Field& w);
-
 }  // namespace pliant

@@ -16,6 +16,7 @@
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::apply_stencil;
 using pliant::testing::eigenvalues_of;
 using pliant::testing::sampled;
 using pliant::testing::unit_grid;
