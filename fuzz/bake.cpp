@@ -12,10 +12,10 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/files/caches/point_cache.hpp"
-#include "pliant/files/gltf/read_gltf.hpp"
 #include "pliant/files/obj/read_obj.hpp"
 #include "pliant/files/ply/read_ply.hpp"
 #include "pliant/files/read_file.hpp"
+#include "pliant/files/read_mesh.hpp"
 #include "tiny_scene.hpp"
 
 using namespace pliant;
@@ -76,7 +76,7 @@ void check_cache_file(const fs::path& file) {
 /// A glTF has one node for each surface.
 void check_gltf_file(const fs::path& file, const Simulation& simulation) {
   for (const RestShape& shape : simulation.rest_shapes())
-    check_mesh_file(read_gltf(file, shape.name));
+    check_mesh_file(read_mesh(file, shape.name));
 }
 
 void check_usda_file(const std::string& text) {

@@ -8,6 +8,7 @@
 #include "files/gltf/gltf_files.hpp"
 #include "pliant/files/obj/read_obj.hpp"
 #include "pliant/files/open_file.hpp"
+#include "pliant/files/read_mesh.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/normals.hpp"
 #include "support/area_vectors.hpp"
@@ -46,8 +47,8 @@ TEST_CASE("vertices of a glTF keep their order and (u,v)", "[mesh][read_gltf]") 
   check_equal(parse_exactly(gltf.text(meshes, cloth_node)).value(), sheet);
   check_equal(parse_exactly(gltf.glb(meshes, cloth_node)).value(), sheet);
   const ScratchFolder folder;
-  check_equal(read_gltf(folder.write("a.gltf", gltf.text(meshes, cloth_node))).value(), sheet);
-  check_equal(read_gltf(folder.write("a.GLB", gltf.glb(meshes, cloth_node))).value(), sheet);
+  check_equal(read_mesh(folder.write("a.gltf", gltf.text(meshes, cloth_node))).value(), sheet);
+  check_equal(read_mesh(folder.write("a.GLB", gltf.glb(meshes, cloth_node))).value(), sheet);
 }
 
 TEST_CASE("a glTF finds its buffers beside it", "[mesh][read_gltf]") {
@@ -57,13 +58,13 @@ TEST_CASE("a glTF finds its buffers beside it", "[mesh][read_gltf]") {
   folder.write("my numbers.bin", gltf.bytes());
   for (const std::string uri : {"my numbers.bin", "my%20numbers.bin", "./my%20numbers.bin"}) {
     const auto file = folder.write("a.gltf", gltf.text(meshes, cloth_node, "0", uri));
-    check_equal(read_gltf(file).value(), small_sheet(true));
+    check_equal(read_mesh(file).value(), small_sheet(true));
     CHECK(gltf_references(OpenFile::open(file).value(), {}) ==
           std::vector{std::filesystem::canonical(folder.path()) / "my numbers.bin"});
   }
   const auto complaint = [&](const std::string& uri) {
     const auto file = folder.write("b.gltf", gltf.text(meshes, cloth_node, "0", uri));
-    const auto mesh = read_gltf(file);
+    const auto mesh = read_mesh(file);
     REQUIRE_FALSE(mesh);
     CHECK(mesh.error().code == ErrorCode::InvalidInput);
     return to_lines(mesh.error()).front();
@@ -325,17 +326,17 @@ TEST_CASE("a glTF's objects are listed as they are read and chosen", "[mesh][rea
   CHECK(choices ==
         std::vector<std::string>{"a/b#1", "#2", name, "a/b#2", "nodes[4]", "knit", "#1"});
   for (std::size_t k = 0; k < objects.size(); ++k) {
-    const Mesh mesh = read_gltf(file, choices[k]).value();
+    const Mesh mesh = read_mesh(file, choices[k]).value();
     CAPTURE(choices[k]);
     CHECK(mesh.object == names[k]);
     CHECK(static_cast<std::uint64_t>(mesh.vertex_count()) == objects[k].vertices);
     CHECK(mesh.face_sizes.size() == objects[k].faces);
     CHECK(mesh.vertex_count() == (k == 1 || k == 3 || k == 6 ? 20 : 9));
   }
-  CHECK_FALSE(read_gltf(file, "a/b"));
-  CHECK_FALSE(read_gltf(file, "#8"));
-  CHECK_FALSE(read_gltf(file, "#0"));
-  CHECK(read_gltf(file, "weave#3")->object == "nodes[4]");  // the third with that mesh
+  CHECK_FALSE(read_mesh(file, "a/b"));
+  CHECK_FALSE(read_mesh(file, "#8"));
+  CHECK_FALSE(read_mesh(file, "#0"));
+  CHECK(read_mesh(file, "weave#3")->object == "nodes[4]");  // the third with that mesh
 }
 
 TEST_CASE("a glTF without a scene shows all its nodes", "[mesh][read_gltf]") {
@@ -530,7 +531,7 @@ TEST_CASE("a glTF that cannot be opened is unreadable", "[mesh][read_gltf]") {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder.file("folder.gltf"));
   for (const std::string name : {"none.gltf", "none.glb", "folder.gltf"}) {
-    const auto missing = read_gltf(folder.file(name));
+    const auto missing = read_mesh(folder.file(name));
     REQUIRE_FALSE(missing);
     CHECK(missing.error().code == ErrorCode::Unreadable);
   }

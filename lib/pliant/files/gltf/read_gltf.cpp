@@ -63,14 +63,6 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
   });
 }
 
-Result<Mesh> read_gltf(const fs::path& file, const std::string& object, int uv_set,
-                       const fs::path& root, std::span<const std::string> attributes,
-                       const StopRequest& should_stop) {
-  const auto opened = OpenFile::open(file);
-  if (!opened) return fail(opened.error());
-  return read_gltf(*opened, object, uv_set, root, attributes, should_stop);
-}
-
 Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_set,
                        const fs::path& root, std::span<const std::string> attributes,
                        const StopRequest& should_stop) {

@@ -63,10 +63,6 @@ Result<Mesh> parse_gltf(std::string_view bytes, const std::string& name,
 /// Reads a file. Files that it refers to must be in the folder `root` or below (`find_reference`);
 /// empty: in its own folder. Errors: as `parse_gltf`; Unreadable: the file cannot be read, or is
 /// larger than 4 GiB with all that it refers to.
-Result<Mesh> read_gltf(const std::filesystem::path& file, const std::string& object = {},
-                       int uv_set = 0, const std::filesystem::path& root = {},
-                       std::span<const std::string> attributes = {},
-                       const StopRequest& should_stop = {});
 Result<Mesh> read_gltf(const OpenFile& file, const std::string& object, int uv_set,
                        const std::filesystem::path& root, std::span<const std::string> attributes,
                        const StopRequest& should_stop = {});
