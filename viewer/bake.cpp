@@ -196,7 +196,7 @@ Json messages_of(const Simulation& simulation) {
   return messages;
 }
 
-Result<void> check_memory(const Simulation& simulation, const FrameRange& frames,
+Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
                           std::size_t max_memory) {
   std::size_t vertex_count = 0;
   for (const RestShape& shape : simulation.rest_shapes()) {
@@ -219,7 +219,7 @@ Result<void> check_memory(const Simulation& simulation, const FrameRange& frames
 using ForceNumbers = std::map<std::string, std::size_t, std::less<>>;
 
 // Runs every frame up to the last, and adds those in `frames` to the surfaces.
-Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const ViewLimits& limits,
+Result<void> run_frames(Simulation& simulation, const FrameSpan& frames, const ViewLimits& limits,
                         std::vector<SurfaceView>& surfaces, CourseFollower& follower,
                         const ForceNumbers& force_numbers, const std::function<void()>& advance) {
   const Scene& scene = simulation.scene();
@@ -248,7 +248,7 @@ Result<void> run_frames(Simulation& simulation, const FrameRange& frames, const 
 
 }  // namespace
 
-Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
+Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
                            const ViewLimits& limits, const std::function<void()>& advance) {
   if (auto fits = check_memory(simulation, frames, limits.max_memory); !fits) {
     return fail(fits.error());

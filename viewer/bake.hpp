@@ -4,7 +4,6 @@
 #include <string>
 
 #include "pliant/simulation/simulation.hpp"
-#include "viewer/frame_range.hpp"
 #include "viewer/telling_frames.hpp"
 
 namespace pliant::viewer {
@@ -27,7 +26,7 @@ struct ViewLimits {
 /// Runs the simulation from the scene's start, and packs `frames` for a page. `advance` is called
 /// after each frame. Errors: those of the simulation; OutOfMemory, before the run, if the frames
 /// need more memory than allowed; Interrupted.
-Result<ViewBake> view_bake(Simulation& simulation, const FrameRange& frames,
+Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
                            const ViewLimits& limits, const std::function<void()>& advance);
 
 /// Above this size a page may start slowly or fail in a browser. [bytes of positions]

@@ -69,7 +69,7 @@ Json points_of(const Curve<D>& curve, int first, int last) {
 }
 
 template <int D>
-Json channel_json(const std::string& path, const Curve<D>& curve, const FrameRange& range) {
+Json channel_json(const std::string& path, const Curve<D>& curve, const FrameSpan& range) {
   Json keys = Json::array(), handles = Json::array();
   for (const Key<D>& key : curve.keys().keys) {
     keys.push_back({{"at", row<D>(key.frame, key.value)}, {"next", name_of(key.next.kind)}});
@@ -87,7 +87,7 @@ Json channel_json(const std::string& path, const Curve<D>& curve, const FrameRan
 
 }  // namespace
 
-Result<Json> view_channels(const Scene& scene, const FrameRange& frames,
+Result<Json> view_channels(const Scene& scene, const FrameSpan& frames,
                            const StopRequest& should_stop) {
   Json channels = Json::array();
   for (const NamedChannel& named : channels_of(scene)) {

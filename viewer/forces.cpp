@@ -33,7 +33,7 @@ struct AddValues {
 };
 
 // The value at each frame, or a single value if all are equal.
-Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
+Json track(const FrameSpan& frames, const std::function<Json(int)>& value_at) {
   Json values = Json::array();
   bool is_constant = true;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
@@ -44,7 +44,7 @@ Json track(const FrameRange& frames, const std::function<Json(int)>& value_at) {
   return values;
 }
 
-Json track(const Channel<1>& channel, const FrameRange& frames) {
+Json track(const Channel<1>& channel, const FrameSpan& frames) {
   return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
 }
 // Parts of a scene by their names.
@@ -77,7 +77,7 @@ class Named {
   std::set<std::string_view> selected_;
 };
 
-Json force_json(const Named& named, const Force& force, const FrameRange& frames) {
+Json force_json(const Named& named, const Force& force, const FrameSpan& frames) {
   const Group* const group = named.group_of(force);
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
   if (group != nullptr) json["group"] = group->name;
@@ -94,7 +94,7 @@ Json force_json(const Named& named, const Force& force, const FrameRange& frames
   return json;
 }
 
-Json group_json(const Named& named, const Group& group, const FrameRange& frames) {
+Json group_json(const Named& named, const Group& group, const FrameSpan& frames) {
   Json json = {{"name", group.name},
                {"kind", "group"},
                {"targets", group.targets},
@@ -114,7 +114,7 @@ void for_each_value(const Force& force,
   std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
 }
 
-Result<Json> view_forces(const Scene& scene, const FrameRange& frames,
+Result<Json> view_forces(const Scene& scene, const FrameSpan& frames,
                          const StopRequest& should_stop) {
   const Named named(scene);
   Json forces = Json::array();

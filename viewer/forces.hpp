@@ -13,7 +13,6 @@
 #include "pliant/feedback/surface_lines.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
-#include "viewer/frame_range.hpp"
 #include "viewer/json.hpp"
 #include "viewer/lines.hpp"
 
@@ -32,7 +31,7 @@ void for_each_value(const Force& force,
 ///
 /// An array with one object for each, forces first. A parameter is an array with a value for each
 /// frame, or with a single value if it is constant. Errors: Interrupted.
-Result<Json> view_forces(const Scene& scene, const FrameRange& frames,
+Result<Json> view_forces(const Scene& scene, const FrameSpan& frames,
                          const StopRequest& should_stop = {});
 
 /// The regions and the boxes of forces that a page draws on one surface, stored only at frames

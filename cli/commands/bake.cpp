@@ -19,7 +19,6 @@
 #include "cli/commands/regions_file.hpp"
 #include "cli/commands/scene_input.hpp"
 #include "cli/commands/solver_option.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/progress.hpp"
@@ -61,7 +60,7 @@ Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
 }
 
 Result<AnimationPlan> make_plan(const Simulation& simulation, const BakeOptions& options,
-                                const FrameRange& frames, const std::vector<std::size_t>& chosen) {
+                                const FrameSpan& frames, const std::vector<std::size_t>& chosen) {
   const Scene& scene = simulation.scene();
   AnimationPlan plan{.file = options.out,
                      .first_frame = frames.first,
@@ -148,7 +147,7 @@ struct Output {
 };
 
 Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
-                           const FrameRange& frames) {
+                           const FrameSpan& frames) {
   const auto chosen = chosen_surfaces(simulation, options);
   if (!chosen) return fail(chosen.error());
   const auto plan = make_plan(simulation, options, frames, *chosen);
@@ -209,7 +208,7 @@ Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regio
 }
 
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
-                             const FrameRange& frames, Output& output,
+                             const FrameSpan& frames, Output& output,
                              std::optional<RegionsFile>& regions, std::optional<DtCheck>& check,
                              const BakeSource& source) {
   Summary summary;

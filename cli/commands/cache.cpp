@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/report.hpp"
 #include "cli/terminal/resources.hpp"
 

@@ -15,7 +15,6 @@
 
 #include "cli/commands/inputs.hpp"
 #include "cli/commands/scene_input.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/report.hpp"

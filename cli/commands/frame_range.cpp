@@ -6,17 +6,17 @@
 
 namespace pliant::cli {
 
-Result<FrameRange> parse_frame_range(const std::string& text) {
+Result<FrameSpan> parse_frame_range(const std::string& text) {
   const std::size_t colon = text.find(':');
   const auto first = to_integer(text.substr(0, colon));
   const auto last = colon == std::string::npos ? first : to_integer(text.substr(colon + 1));
-  if (first && last && *first <= *last) return FrameRange{*first, *last};
+  if (first && last && *first <= *last) return FrameSpan{*first, *last};
   return fail(ErrorCode::InvalidInput,
               fmt::format("--frames {}: must be one frame, or A:B with A <= B", text));
 }
 
-Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
-  if (!asked) return FrameRange{scene.start, scene.end};
+Result<FrameSpan> parse_frames(const std::optional<std::string>& asked, const Scene& scene) {
+  if (!asked) return FrameSpan{scene.start, scene.end};
   auto frames = parse_frame_range(*asked);
   if (!frames) return frames;
   if (frames->first < scene.start || frames->last > scene.end) {
@@ -26,7 +26,7 @@ Result<FrameRange> parse_frames(const std::optional<std::string>& asked, const S
   return frames;
 }
 
-std::string peak_text(double peak_displacement, const FrameRange& frames, const Scene& scene) {
+std::string peak_text(double peak_displacement, const FrameSpan& frames, const Scene& scene) {
   std::string text = fmt::format("peak displacement {:.6g}", peak_displacement);
   if (frames.first == scene.start && frames.last == scene.end) return text;
   return text + (frames.count() == 1

@@ -6,7 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands/info_formats.hpp"
-#include "cli/terminal/counted.hpp"
+#include "cli/terminal/report.hpp"
 #include "cli/terminal/rounded.hpp"
 #include "pliant/scene/format/description.hpp"
 

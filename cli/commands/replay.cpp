@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "cli/commands/scene_input.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/progress.hpp"

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "cli/commands/info_formats.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/json.hpp"
+#include "cli/terminal/report.hpp"
 
 namespace pliant::cli {
 namespace {

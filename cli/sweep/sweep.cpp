@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/report.hpp"
 

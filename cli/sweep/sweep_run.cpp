@@ -14,7 +14,6 @@
 #include "cli/commands/solver_option.hpp"
 #include "cli/sweep/sweep.hpp"
 #include "cli/sweep/sweep_memory.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/progress.hpp"
 #include "cli/terminal/report.hpp"
@@ -63,7 +62,7 @@ Result<SweepRequest> request_of(const SweepRunOptions& options) {
   if (options.frames) {
     const auto frames = parse_frame_range(*options.frames);
     if (!frames) return fail(frames.error());
-    request.frames = TakeFrames{frames->first, frames->last};
+    request.frames = FrameSpan{frames->first, frames->last};
   }
   if (options.write) {
     request.write = options.write->starts_with('.') ? *options.write : "." + *options.write;

@@ -7,7 +7,6 @@
 
 #include "cli/sweep/sweep.hpp"
 #include "cli/sweep/sweep_memory.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/progress.hpp"
 #include "cli/terminal/report.hpp"

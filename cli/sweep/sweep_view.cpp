@@ -12,7 +12,6 @@
 #include "cli/commands/look.hpp"
 #include "cli/sweep/sweep.hpp"
 #include "cli/sweep/sweep_memory.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/output_file.hpp"
 #include "cli/terminal/progress.hpp"

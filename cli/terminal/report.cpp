@@ -25,6 +25,11 @@ void print_bytes(std::FILE* stream, std::string_view bytes) {
   std::fwrite(bytes.data(), 1, bytes.size(), stream);
 }
 
+std::string counted(std::int64_t count, std::string_view one, std::string_view many) {
+  if (count == 1) return fmt::format("1 {}", one);
+  return many.empty() ? fmt::format("{} {}s", count, one) : fmt::format("{} {}", count, many);
+}
+
 int exit_code(const Error& error) {
   const bool is_input =
       error.code == ErrorCode::InvalidInput || error.code == ErrorCode::Unreadable;

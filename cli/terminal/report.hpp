@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "pliant/core/result.hpp"
@@ -24,6 +26,9 @@ void print(std::FILE* stream, std::string_view text);
 
 /// Writes bytes to the standard output or error as they are; to a terminal as `print` does.
 void print_bytes(std::FILE* stream, std::string_view bytes);
+
+/// "1 frame", "2 frames"; with `many`, "1 vertex", "2 vertices".
+std::string counted(std::int64_t count, std::string_view one, std::string_view many = {});
 
 /// The exit code for an error.
 int exit_code(const Error& error);

@@ -71,7 +71,7 @@ Result<Plan> make_plan(const ViewOptions& options, const Scene& scene) {
 // Orders frames of a movie, some ahead of those that it takes: the browser draws them meanwhile.
 class FrameTaker {
  public:
-  FrameTaker(PictureTaker& taker, const FrameRange& frames, const Plan& plan, std::string look)
+  FrameTaker(PictureTaker& taker, const FrameSpan& frames, const Plan& plan, std::string look)
       : taker_(taker), frames_(frames), plan_(plan), look_(std::move(look)), next_(frames.first) {}
 
   Result<void> order_ahead() {
@@ -96,14 +96,14 @@ class FrameTaker {
   static constexpr std::size_t most_waiting = 100'000'000;  // [bytes]
 
   PictureTaker& taker_;
-  FrameRange frames_;
+  FrameSpan frames_;
   Plan plan_;
   std::string look_;
   int next_;                 // to be ordered
   std::size_t waiting_ = 0;  // ordered, and not taken yet
 };
 
-Result<void> write_frames(FrameTaker& taker, MovieWriter& movie, const FrameRange& frames,
+Result<void> write_frames(FrameTaker& taker, MovieWriter& movie, const FrameSpan& frames,
                           bool is_quiet) {
   Progress progress(frames.count(), is_quiet);
   for (int frame = frames.first; frame <= frames.last; ++frame) {

@@ -71,7 +71,7 @@ std::string address_of(const std::string& path) {
   return address;
 }
 
-Result<void> check_frame(const ViewOptions& options, const FrameRange& frames) {
+Result<void> check_frame(const ViewOptions& options, const FrameSpan& frames) {
   const int frame = options.frame.value_or(frames.first);
   if (frame >= frames.first && frame <= frames.last) return {};
   return fail(ErrorCode::InvalidInput,

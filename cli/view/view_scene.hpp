@@ -12,7 +12,7 @@ namespace pliant::cli {
 /// A scene after its run for a page.
 struct BakedScene {
   Scene scene;
-  FrameRange frames;
+  FrameSpan frames;
   viewer::ViewBake bake;
   FrameCounts counts;  ///< frames solved and frames read from the store
 };

@@ -15,7 +15,6 @@
 
 #include "cli/commands/cache.hpp"
 #include "cli/commands/scene_input.hpp"
-#include "cli/terminal/counted.hpp"
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/json.hpp"
 #include "cli/terminal/report.hpp"

@@ -285,7 +285,7 @@ TEST_CASE("another sweep in a folder is refused with the difference", "[sweep]")
              contains_text("it has --vary sheet.density=1,2,3 --vary poke.magnitude*=1,2, not "
                            "--vary sheet.density=1,2"));
   other = request;
-  other.frames = TakeFrames{1, 3};
+  other.frames = FrameSpan{1, 3};
   CHECK_THAT(complaint_of(SweepFolder::make(place.sweep(), other)),
              contains_text("it has no --frames, not --frames 1:3"));
   other = request;

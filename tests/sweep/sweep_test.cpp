@@ -138,12 +138,12 @@ TEST_CASE("each text is refused as by itself, wherever it stands", "[sweep]") {
 
 TEST_CASE("frames that the scene lacks are told", "[sweep]") {
   const Takes takes = Takes::make({.vary = {"sheet.density=1"}}).value();
-  const auto sweep = Sweep::make({poked()}, takes, {.frames = TakeFrames{2, 9}});
+  const auto sweep = Sweep::make({poked()}, takes, {.frames = FrameSpan{2, 9}});
   REQUIRE_FALSE(sweep);
   CHECK_THAT(sweep.error().message, contains_text("--frames 2:9: the scene has frames 1 to 8"));
   // If the frames vary, it fails those takes that lack them.
   const Takes ends = Takes::make({.vary = {"scene.end=8,9"}}).value();
-  const Sweep varied = Sweep::make({poked()}, ends, {.frames = TakeFrames{2, 9}}).value();
+  const Sweep varied = Sweep::make({poked()}, ends, {.frames = FrameSpan{2, 9}}).value();
   const Outcomes outcomes = run_all(varied);
   CHECK_FALSE(outcomes.at(0).measures);
   CHECK(outcomes.at(1).measures);

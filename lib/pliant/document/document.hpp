@@ -22,7 +22,7 @@ struct DocumentOptions {
   StopRequest should_stop = {};
 };
 
-/// What a edit changed.
+/// What an edit changed.
 struct Change {
   std::string name;                     ///< of the edit
   std::vector<TextEdit> edits = {};     ///< of the text, to be made one after the other

@@ -21,7 +21,8 @@ const std::string* path_of(const Operation& operation) {
 
 bool ObjectDrafts::apply(const Operation& operation) {
   const std::string* const path = path_of(operation);
-  Part* const part = path ? part_of(std::string_view(*path).substr(0, path->find('.'))) : nullptr;
+  ObjectText* const part =
+      path ? text_of(std::string_view(*path).substr(0, path->find('.'))) : nullptr;
   if (!part) return false;
   // A curve whose values are computed needs the definitions.
   const bool is_computed = part->text.find('$') != std::string::npos;
@@ -53,13 +54,13 @@ void ObjectDrafts::find_objects() {
   }
 }
 
-ObjectDrafts::Part* ObjectDrafts::part_of(std::string_view name) {
+ObjectDrafts::ObjectText* ObjectDrafts::text_of(std::string_view name) {
   if (const auto known = parts_of_text_.find(name); known != parts_of_text_.end())
     return &known->second;
   if (objects_.empty()) find_objects();
   const auto object = objects_.find(std::string(name));
   if (object == objects_.end()) return nullptr;
-  Part part;
+  ObjectText part;
   part.text = scene_around(object->second, part.begin);
   return &parts_of_text_.emplace(name, std::move(part)).first->second;
 }

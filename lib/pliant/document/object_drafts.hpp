@@ -31,13 +31,13 @@ class ObjectDrafts {
   const std::set<std::string>& parts() const { return parts_; }
 
  private:
-  struct Part {
+  struct ObjectText {
     std::string text;                // of a scene with this object only
     std::size_t begin = 0;           // of the object in it
     std::vector<EditBatch> batches;  // one after the other
   };
 
-  Part* part_of(std::string_view name);
+  ObjectText* text_of(std::string_view name);
   std::string scene_around(ElementIndex object, std::size_t& begin) const;
   void find_objects();
 
@@ -45,7 +45,7 @@ class ObjectDrafts {
   const Scene& scene_;
   std::map<std::string, ElementIndex> objects_;  // of the whole draft, by name; empty: not known
   std::string indent_;                           // of the whole draft
-  std::map<std::string, Part, std::less<>> parts_of_text_;  // by the name of the object
+  std::map<std::string, ObjectText, std::less<>> parts_of_text_;  // by the name of the object
   std::set<std::string> parts_;
 };
 

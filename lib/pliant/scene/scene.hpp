@@ -351,10 +351,12 @@ double frame_length(const Scene& scene, const Surface& surface, int frame);
 /// it. Up to there it is at rest.
 int first_solved_frame(const Scene& scene, const Surface& surface);
 
-/// First and last of some frames.
+/// Frames, both ends included.
 struct FrameSpan {
   int first = 0;
   int last = 0;
+
+  int count() const { return last - first + 1; }
 };
 
 /// The frames at which the channels of a surface are sampled: those of the scene, and those ahead

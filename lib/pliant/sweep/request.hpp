@@ -14,7 +14,7 @@ namespace pliant {
 struct SweepRequest {
   std::vector<std::string> scenes = {};  ///< files
   SweepVariation variation = {};         ///< its `scene_count` is that of the scenes
-  std::optional<TakeFrames> frames = {};
+  std::optional<FrameSpan> frames = {};
   SolverChoice solver = SolverChoice::Auto;
   std::string root = {};   ///< as in `load_scene`
   std::string write = {};  ///< ending of the animations, `.npy`; empty: only the table is made

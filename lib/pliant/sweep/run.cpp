@@ -32,7 +32,7 @@ std::size_t share_of(std::size_t count, std::size_t max_memory) {
 // The animation of a take in a file, as a bake writes it.
 class TakeWriter {
  public:
-  static Result<TakeWriter> make(const Simulation& simulation, const TakeFrames& frames,
+  static Result<TakeWriter> make(const Simulation& simulation, const FrameSpan& frames,
                                  const std::string& file) {
     const Scene& scene = simulation.scene();
     AnimationPlan plan{
@@ -69,7 +69,7 @@ class TakeWriter {
   std::vector<SurfacePose> poses_;
 };
 
-Result<Measures> play(Simulation& simulation, const TakeFrames& frames, const TakeRun& options,
+Result<Measures> play(Simulation& simulation, const FrameSpan& frames, const TakeRun& options,
                       const Scene& scene) {
   PLIANT_EXPECTS(options.file.empty() || !options.watch);
   std::optional<TakeWriter> writer;

@@ -138,8 +138,8 @@ Result<Scene> Sweep::scene_of(std::size_t take) const {
   return scene;
 }
 
-Result<TakeFrames> Sweep::frames_of(const Scene& scene) const {
-  if (!settings_.frames) return TakeFrames{scene.start, scene.end};
+Result<FrameSpan> Sweep::frames_of(const Scene& scene) const {
+  if (!settings_.frames) return FrameSpan{scene.start, scene.end};
   const auto [first, last] = *settings_.frames;
   if (first <= last && first >= scene.start && last <= scene.end) return *settings_.frames;
   return fail(ErrorCode::InvalidInput, fmt::format("--frames {}:{}: the scene has frames {} to {}",

@@ -20,15 +20,9 @@ namespace pliant {
 
 class Shelf;
 
-/// Frames, both ends included.
-struct TakeFrames {
-  int first = 0;
-  int last = 0;
-};
-
 /// What all takes of a sweep have in common.
 struct SweepSettings {
-  std::optional<TakeFrames> frames = {};  ///< that are measured and written; none: the scene's
+  std::optional<FrameSpan> frames = {};  ///< that are measured and written; none: the scene's
   SolverChoice solver = SolverChoice::Auto;
   std::string root = {};  ///< as in `load_scene`, for files that changes name
 };
@@ -106,7 +100,7 @@ class Sweep {
   Result<Scene> scene_of(std::size_t take) const;
 
   /// The frames of a take that are measured. Errors: InvalidInput: its scene has others.
-  Result<TakeFrames> frames_of(const Scene& scene) const;
+  Result<FrameSpan> frames_of(const Scene& scene) const;
 
   /// Runs a take. Errors: those of `scene_of`, `Simulation::make` and `at`, of the writer, and of
   /// `TakeRun::check`; Interrupted.

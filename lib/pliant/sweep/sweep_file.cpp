@@ -222,7 +222,7 @@ class SweepFileReader : private JsonReader {
         if (frame != std::trunc(frame) || !(std::fabs(frame) <= std::numeric_limits<int>::max()))
           refuse("frames", "has an element that is not a frame");
       if (!fault_)
-        request.frames = TakeFrames{static_cast<int>(frames[0]), static_cast<int>(frames[1])};
+        request.frames = FrameSpan{static_cast<int>(frames[0]), static_cast<int>(frames[1])};
     }
     const auto solver = solver_choice(required_text(json, "solver"));
     if (!solver) refuse("solver", "is unknown");
@@ -274,7 +274,7 @@ std::string options_text(std::string_view option, const std::vector<std::string>
   return text;
 }
 
-std::string frames_text(const std::optional<TakeFrames>& frames) {
+std::string frames_text(const std::optional<FrameSpan>& frames) {
   return frames ? fmt::format("--frames {}:{}", frames->first, frames->last) : "no --frames";
 }
 
