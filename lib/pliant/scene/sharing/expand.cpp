@@ -41,23 +41,25 @@ struct OpenText {
   TextPlace name_place(const ElementPlace& element) const { return at(element.name); }
 };
 
-/// The lines of all definitions of a text, by name, found when one is asked for.
+/// The line of a definition of a text; all are found when one is asked for.
 std::function<std::optional<int>(std::string_view)> later_definitions(const OpenText& text,
                                                                       const SourceMap& sources) {
-  using Lines = std::map<std::string_view, int, std::less<>>;
-  return [&, lines = std::optional<Lines>()](std::string_view name) mutable -> std::optional<int> {
-    if (!lines) {
-      lines.emplace();
-      for (std::size_t k = 0; k < text.markup.elements.size(); ++k) {
-        const ElementPlace& element = text.markup.elements[k];
-        if (text.name_of(element) != define_name) continue;
-        if (const auto* const own = text.markup.attribute_of(k, "name", text.text))
-          lines->emplace(own->value.of(text.text), sources.place_of(text.name_place(element)).line);
-      }
-    }
-    const auto found = lines->find(name);
-    return found == lines->end() ? std::nullopt : std::optional(found->second);
-  };
+  using Places = std::map<std::string_view, TextRange, std::less<>>;
+  return
+      [&, places = std::optional<Places>()](std::string_view name) mutable -> std::optional<int> {
+        if (!places) {
+          places.emplace();
+          for (std::size_t k = 0; k < text.markup.elements.size(); ++k) {
+            const ElementPlace& element = text.markup.elements[k];
+            if (text.name_of(element) != define_name) continue;
+            if (const auto* const own = text.markup.attribute_of(k, "name", text.text))
+              places->emplace(own->value.of(text.text), element.name);
+          }
+        }
+        const auto found = places->find(name);
+        if (found == places->end()) return std::nullopt;
+        return sources.place_of(text.at(found->second)).line;
+      };
 }
 
 class Expander {
