@@ -106,7 +106,7 @@ int run_validate(const ValidateOptions& options) {
     const int code = validate(file, options, options.is_json ? &findings : nullptr);
     worst = std::max(worst, code);
     if (was_interrupted()) {
-      return worst == exit_done ? report({ErrorCode::Interrupted, "interrupted"}) : exit_failed;
+      return code == exit_failed ? code : report({ErrorCode::Interrupted, "interrupted"});
     }
     findings.scenes.push_back({{"file", title_of_scene(file)}, {"valid", code == exit_done}});
   }
