@@ -52,8 +52,8 @@ struct Warning {
 /// the scene's surfaces.
 std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, const Scene& scene);
 
-/// The line of a warning's cause in the expanded text: the force, or the tangents or start frame of
-/// its surface.
+/// The place of a warning's cause: the force, or an attribute of its surface such as its tangents
+/// or start frame.
 TextPlace place_of(const Warning& warning, const SceneOrigin& origin);
 
 }  // namespace pliant

@@ -157,7 +157,7 @@ struct Description<MaterialOf<Of>> {
   }
 };
 
-/// A map among the parts of its surface, as their lines are named: `map.b`.
+/// A map among the parts of its surface, as their places are named: `map.b`.
 std::string name_of(MapChannel channel);
 
 template <>
