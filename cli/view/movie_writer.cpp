@@ -51,6 +51,11 @@ class Ffmpeg {
     return Ffmpeg(*std::move(program), std::move(pixels.writing), log);
   }
 
+  Result<void> check_runs() {
+    if (program_.code()) return failure();
+    return {};
+  }
+
   // Waits until it has read all bytes. Errors: Unwritable with ffmpeg's message if it ended;
   // Interrupted.
   Result<void> write(std::string_view bytes) {
@@ -241,6 +246,8 @@ Result<MovieWriter> MovieWriter::start(const MoviePlan& plan, const ScratchFolde
   auto state = std::make_unique<State>(State{plan, folder, *std::move(file), *std::move(ffmpeg)});
   return MovieWriter(std::move(state));
 }
+
+Result<void> MovieWriter::check_runs() { return state_->ffmpeg.check_runs(); }
 
 Result<void> MovieWriter::write(std::string_view picture) { return state_->ffmpeg.write(picture); }
 

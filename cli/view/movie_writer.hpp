@@ -38,6 +38,8 @@ class MovieWriter {
   MovieWriter& operator=(MovieWriter&&) = delete;
   ~MovieWriter();
 
+  /// Errors: Unwritable with ffmpeg's message if it ended too early.
+  Result<void> check_runs();
   /// Adds the next frame: its pixels, as `PictureForm::Pixels`. Errors: Unwritable, Interrupted.
   Result<void> write(std::string_view picture);
   /// Gives the file its name, and returns its size. [bytes] Errors: as for `write`.

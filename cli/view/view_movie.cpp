@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <functional>
 #include <string>
 #include <utility>
 
@@ -85,8 +86,8 @@ class FrameTaker {
     return {};
   }
 
-  Result<std::string> take() {
-    auto picture = taker_.take();
+  Result<std::string> take(const std::function<Result<void>()>& check) {
+    auto picture = taker_.take(check);
     --waiting_;
     if (auto ordered = order_ahead(); !ordered) return fail(ordered.error());
     return picture;
@@ -107,7 +108,7 @@ Result<void> write_frames(FrameTaker& taker, MovieWriter& movie, const FrameSpan
                           bool is_quiet) {
   Progress progress(frames.count(), is_quiet);
   for (int frame = frames.first; frame <= frames.last; ++frame) {
-    const auto picture = taker.take();
+    const auto picture = taker.take([&] { return movie.check_runs(); });
     const auto written = picture ? movie.write(*picture) : fail(picture.error());
     if (!written) return fail(with_frame(written.error(), frame));
     progress.advance();

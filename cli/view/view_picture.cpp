@@ -205,7 +205,7 @@ Result<void> PictureTaker::order(viewer::Json job, viewer::PictureSize size,
 
 void PictureTaker::publish(std::string packed) { state_->server.publish(std::move(packed)); }
 
-Result<std::string> PictureTaker::take() {
+Result<std::string> PictureTaker::take(const std::function<Result<void>()>& check) {
   constexpr auto patience = 120s;
   const auto begin = std::chrono::steady_clock::now();
   while (std::chrono::steady_clock::now() - begin < patience) {
@@ -215,6 +215,7 @@ Result<std::string> PictureTaker::take() {
       return fail(ErrorCode::Unwritable,
                   "Chromium sent an unusable picture: " + picture->error().message);
     }
+    if (auto checked = check ? check() : Result<void>(); !checked) return fail(checked.error());
     if (state_->browser->code()) {
       return fail(ErrorCode::Unwritable, "Chromium ended without a picture");
     }

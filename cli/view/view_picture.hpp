@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -46,9 +47,9 @@ class PictureTaker {
                      viewer::PictureForm form = viewer::PictureForm::Png);
   /// What to draw: see `ViewBake::packed`, or `SweepBake` for the page of a sweep.
   void publish(std::string packed);
-  /// Waits for the next of the pictures ordered. Requires: `publish` was called. Errors: Unwritable
-  /// if the browser ended or needs too long; Interrupted.
-  Result<std::string> take();
+  /// Waits for the next of the pictures ordered, as long as `check` succeeds. Requires: `publish`
+  /// was called. Errors: of `check`; Unwritable if the browser ended or needs too long; Interrupted.
+  Result<std::string> take(const std::function<Result<void>()>& check = nullptr);
   /// Ends the browser.
   void close();
 
