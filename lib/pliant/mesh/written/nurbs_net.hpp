@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <tl/expected.hpp>
-
 #include "pliant/core/field.hpp"
+#include "pliant/core/result.hpp"
 
 namespace pliant {
 
