@@ -48,7 +48,8 @@ class PictureTaker {
   /// What to draw: see `ViewBake::packed`, or `SweepBake` for the page of a sweep.
   void publish(std::string packed);
   /// Waits for the next of the pictures ordered, as long as `check` succeeds. Requires: `publish`
-  /// was called. Errors: of `check`; Unwritable if the browser ended or needs too long; Interrupted.
+  /// was called. Errors: those of `check`; Unwritable if the browser ended or needs too long;
+  /// Interrupted.
   Result<std::string> take(const std::function<Result<void>()>& check = nullptr);
   /// Ends the browser.
   void close();
