@@ -1,14 +1,18 @@
-// Measures surfaces of triangles against what the sparse factor of the same matrix takes in the
-// same run. A frame is 20 backward Euler steps of three components, from one state to the next.
+// Measures surfaces of triangles against what CHOLMOD takes for the same matrix in the same run. A
+// frame is 20 backward Euler steps of three components, from one state to the next.
 //
 //   kept      a frame whose region and coefficients are those of the frame before
 //   sliding   a frame whose force, and with it region and factor, is new
-//   bound     of kept: 20 solves by the library; of sliding: its order and factor too
-//   ratio     of a frame to its bound
+//   order     and pattern of the factor; numbers: those of it
+//   (a)       20 solves with CHOLMOD's simplicial factor; of sliding: AMD's order and the factor
+//             too
+//   (b)       the same with its supernodal factor and the system's BLAS, one thread
+//   memory    of the factor, as a part of (a)'s
 //   read      an OBJ file; prepare: nodes, faces, triangles, and the tree for selecting
 //   select    a force that reaches a hundredth of the surface
 //
-// Times are medians, one thread. Run: build/release/bench/meshes [--large]
+// Times are medians in ms, in brackets as a part of (a) and of (b). Run:
+// build/release/bench/meshes [--large] [--threads N]
 
 #include "support/meshes.hpp"
 
@@ -27,7 +31,11 @@
 
 #include "measuring.hpp"
 #include "pliant/body/triangle_body.hpp"
+#include "pliant/core/thread_pool.hpp"
 #include "pliant/files/obj/read_obj.hpp"
+#ifdef PLIANT_BENCH_SUPERNODAL
+#include "supernodal.hpp"
+#endif
 
 namespace {
 
@@ -55,51 +63,86 @@ double median_ms(int repetitions, const Work& work) {
   return typical(std::move(times), false);
 }
 
-// What the factor takes for the matrix of a body's last step.
-struct Bound {
-  double factor = 0, solves = 0;  // [ms]
+// What a factor takes. [ms], [bytes]
+struct FactorCost {
+  double order = 0, numbers = 0, solves = 0;
+  std::size_t bytes = 0;
+
+  double all() const { return order + numbers + solves; }
 };
 
-Bound bound_of(const TriangleBody& body, const BodyInputs& in, int repetitions) {
-  const TrianglePatch& patch = body.last_step().surface->patches.at(0);
-  const TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), {});
-  const double dt = in.frame_length / steps;
-  const Bending bending = bending_of(in, body.surface().unit, body.settings().border);
-  const SparseMatrix matrix = plate.matrix(bending, in.dynamics.shift(dt)).value();
+FactorCost cost_of(const SparseMatrix& matrix, SolverChoice choice, const RunContext& context,
+                   int repetitions) {
   std::unique_ptr<SparseFactor> factor;
-  Bound bound;
-  bound.factor = median_ms(repetitions, [&] {
-    factor = make_sparse_factor(available_solvers().front());
-    if (!factor->analyze(matrix) || !factor->factorize(matrix, {})) std::abort();
+  FactorCost cost;
+  cost.order = median_ms(repetitions, [&] {
+    factor = make_sparse_factor(choice, context);
+    if (!factor->analyze(matrix)) std::abort();
+  });
+  cost.numbers = median_ms(repetitions, [&] {
+    if (!factor->factorize(matrix, {})) std::abort();
   });
   const Field forces = Field::Random(matrix.rows(), 3);
-  bound.solves = median_ms(repetitions, [&] {
+  cost.solves = median_ms(repetitions, [&] {
     for (int step = 0; step < steps; ++step) {
       if (!factor->solve(forces)) std::abort();
     }
   });
-  return bound;
+  cost.bytes = factor->bytes();
+  return cost;
 }
 
-void measure_frames(int count, bool has_quads) {
+FactorCost cost_of_supernodal([[maybe_unused]] const SparseMatrix& matrix,
+                              [[maybe_unused]] int repetitions) {
+  FactorCost cost;
+#ifdef PLIANT_BENCH_SUPERNODAL
+  std::unique_ptr<bench::SupernodalCholmod> factor;
+  const double first = median_ms(repetitions, [&] {
+    factor = std::make_unique<bench::SupernodalCholmod>(CHOLMOD_AMD);
+    factor->factor(matrix);
+  });
+  cost.numbers = median_ms(repetitions, [&] { factor->factor(matrix); });
+  cost.order = first - cost.numbers;
+  const Field forces = Field::Random(matrix.rows(), 3);
+  cost.solves = median_ms(repetitions, [&] {
+    for (int step = 0; step < steps; ++step) factor->solve(forces);
+  });
+#endif
+  return cost;
+}
+
+void measure_frames(int count, bool has_quads, ThreadPool* threads) {
   const Mesh mesh = testing::square(count, 1, 0.3, has_quads);
+  const RunContext context{.threads = threads};
   TriangleBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
-                    {.measure = Measure::Rest});
+                    {.measure = Measure::Rest}, SolverChoice::Auto, context);
   const int repetitions = count < 200 ? 9 : 3;
   const BodyInputs in = inputs_of(poke(0, 0.45));
   const auto step = [&](const BodyInputs& inputs) {
     if (!body.step(inputs)) std::abort();
   };
   step(in);
-  const Bound bound = bound_of(body, in, repetitions);
+  const TrianglePatch& patch = body.last_step().surface->patches.at(0);
+  const TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), {});
+  const SparseMatrix matrix =
+      plate
+          .matrix(bending_of(in, body.surface().unit, body.settings().border),
+                  in.dynamics.shift(in.frame_length / steps))
+          .value();
+  const FactorCost ours = cost_of(matrix, SolverChoice::Supernodal, context, repetitions);
+  const FactorCost simplicial = cost_of(matrix, SolverChoice::Cholmod, {}, repetitions);
+  const FactorCost supernodal = cost_of_supernodal(matrix, repetitions);
   const double kept = median_ms(repetitions, [&] { step(in); });
   double x = 0;
   const double sliding = median_ms(repetitions, [&] { step(inputs_of(poke(x += 1e-3, 0.45))); });
-  const double whole = bound.factor + bound.solves;
-  fmt::print("| {} | {} | {} | {:.0f} | {:.0f} | {:.2f} | {:.0f} | {:.0f} | {:.2f} |\n",
-             body.last_step().unknown_count(), has_quads ? "quads" : "triangles",
-             body.last_step().surface->patches[0].cells.cells.size(), kept, bound.solves,
-             kept / bound.solves, sliding, whole, sliding / whole);
+  fmt::print(
+      "| {} | {} | {:.0f} ({:.2f}, {:.2f}) | {:.0f} ({:.2f}, {:.2f}) | {:.0f} + {:.0f} | "
+      "{:.0f} ({:.2f}, {:.2f}) | {:.2f} |\n",
+      body.last_step().unknown_count(), has_quads ? "quads" : "triangles", kept,
+      kept / simplicial.solves, kept / supernodal.solves, sliding, sliding / simplicial.all(),
+      sliding / supernodal.all(), ours.order, ours.numbers, ours.solves,
+      ours.solves / simplicial.solves, ours.solves / supernodal.solves,
+      static_cast<double>(ours.bytes) / static_cast<double>(simplicial.bytes));
   std::fflush(stdout);
 }
 
@@ -145,13 +188,18 @@ void measure_preparation(int count) {
 
 int main(int count, char** arguments) {
   bool is_large = false;
-  if (!read_options(count, arguments, {{"--large", &is_large}}, "meshes [--large]")) return 2;
+  int threads = 1;
+  if (!read_options(count, arguments, {{"--large", &is_large}, {"--threads", &threads}},
+                    "meshes [--large] [--threads N]"))
+    return 2;
+  ThreadPool pool(std::max(1, threads));
+  ThreadPool* const used = threads > 1 ? &pool : nullptr;
   fmt::print(
-      "| nodes inside | faces | cells | kept, ms | bound | ratio | sliding, ms | bound | ratio |\n"
-      "|---|---|---|---|---|---|---|---|---|\n");
+      "| nodes inside | faces | kept | sliding | order + numbers | 20 solves | memory |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (const int side : {40, 125}) {
-    for (const bool has_quads : {false, true}) measure_frames(side, has_quads);
+    for (const bool has_quads : {false, true}) measure_frames(side, has_quads, used);
   }
-  if (is_large) measure_frames(395, false);
+  if (is_large) measure_frames(395, false, used);
   measure_preparation(707);
 }

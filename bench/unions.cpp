@@ -103,7 +103,7 @@ void measure(const char* shape, int side, const std::vector<Box>& boxes) {
     return make_schwarz_solver(context);
   });
   const SolverChoice choice =
-      is_available(SolverChoice::Cholmod) ? SolverChoice::Cholmod : SolverChoice::Eigen;
+      is_available(SolverChoice::Cholmod) ? SolverChoice::Supernodal : SolverChoice::Eigen;
   const Times direct = measure(problem, is_small ? 5 : 1, [&](const RunContext& context) {
     return make_plate_solver(choice, context);
   });

@@ -247,7 +247,7 @@ class Bake(Command):
         scene = self.write("s.xml", SCENE.format(end=12).replace('"13"', '"41"').replace(
             '"11"', '"33"'))
         frames = {}
-        for solver in ("auto", "spectral", "cholmod"):
+        for solver in ("auto", "spectral", "supernodal", "cholmod"):
             out = self.path(f"{solver}.npy")
             result = subprocess.run([PLIANT, "bake", scene, "-o", out, "--solver", solver],
                                     capture_output=True, text=True, timeout=120, check=False)

@@ -38,8 +38,8 @@ class Complete(Command):
 
     def test_words_that_an_option_takes(self):
         self.assertEqual(self.offered("bake", "a.xml", "--space", ""), ("words", ["world", "object"]))
-        self.assertEqual(set(self.offered("bake", "--solver=")[1]), {"auto", "spectral", "cholmod"})
-        self.assertEqual(set(self.offered("bake", "--solver", "=", "a")[1]), {"auto", "spectral", "cholmod"})
+        self.assertEqual(set(self.offered("bake", "--solver=")[1]), {"auto", "spectral", "supernodal", "cholmod"})
+        self.assertEqual(set(self.offered("bake", "--solver", "=", "a")[1]), {"auto", "spectral", "supernodal", "cholmod"})
         self.assertEqual(self.offered("bake", "a.xml", "--threads", ""), ("words", []))
         self.assertIn("record", self.offered("help", "")[1][0:] + self.offered("replay", "")[1])
         self.assertIn("bake", self.offered("help", "")[1])

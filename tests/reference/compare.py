@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 """Compares an engine's bakes with the reference implementation, scene by scene.
 
-    python3 compare.py PLIANT_BINARY SCENE... [--also PLIANT_BINARY] [--well-posed] [--keep DIR]
+    python3 compare.py PLIANT_BINARY SCENE... [--well-posed] [--keep DIR]
 
-Each scene is baked once with the reference, and with `PLIANT_BINARY bake SCENE -o OUT.npy` of each
-binary; the largest difference must stay within 1e-8 of the surface's peak displacement over the run,
-1e-7 with exact motion. A surface that never moves must be exactly at rest. On a surface of triangles,
+Each scene is baked with the reference, and with `PLIANT_BINARY bake SCENE -o OUT.npy`; the largest
+difference must stay within 1e-8 of the surface's peak displacement over the run, 1e-7 with exact motion. A surface that never moves must be exactly at rest. On a surface of triangles,
 so must every vertex that does not move, and the patches' numbers of nodes and cells must agree. With
 --well-posed, no scene may leave a decision to rounding (well_posed.py), nor hardly move unless its
 text has "nothing moves". Exit 1 when a scene fails.
@@ -113,8 +112,8 @@ def patches_difference(told, name, reference):
     return None
 
 
-def compare_scene(binaries, path, folder, asks_whether_well_posed):
-    """Bakes and compares one scene; returns whether all binaries agree."""
+def compare_scene(binary, path, folder, asks_whether_well_posed):
+    """Bakes and compares one scene; returns whether the two agree."""
     scene = Scene(path)
     began = time.monotonic()
     trouble = None
@@ -130,12 +129,12 @@ def compare_scene(binaries, path, folder, asks_whether_well_posed):
     print(f"     {path}: reference {time.monotonic() - began:.1f} s")
     if trouble:
         print(f"FAIL {path}: not well posed: {trouble}")
-    return trouble is None and all([compare_binary(binary, scene, path, references, folder) for binary in binaries])
+    return trouble is None and compare_binary(binary, scene, path, references, folder)
 
 
 def compare_binary(binary, scene, path, references, folder):
     """Bakes a scene with one binary; returns whether it agrees."""
-    folder = os.path.join(folder, os.path.basename(binary))
+    folder = os.path.join(folder, "baked")
     os.makedirs(folder, exist_ok=True)
     out = os.path.join(folder, os.path.splitext(os.path.basename(path))[0] + ".npy")
     regions = os.path.join(folder, "regions.json")
@@ -176,15 +175,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("binary", help="the pliant executable")
     parser.add_argument("scenes", nargs="+", metavar="SCENE")
-    parser.add_argument("--also", metavar="PLIANT_BINARY", help="another executable, for the same scenes")
     parser.add_argument("--well-posed", action="store_true", help="also check that the scenes are well posed")
     parser.add_argument("--keep", metavar="DIR", help="keep the bakes here, in a folder of each executable's name")
     arguments = parser.parse_args()
-    binaries = [binary for binary in (arguments.binary, arguments.also) if binary]
     with tempfile.TemporaryDirectory() as temporary:
         folder = arguments.keep or temporary
         failed = [path for path in arguments.scenes
-                  if not compare_scene(binaries, path, folder, arguments.well_posed)]
+                  if not compare_scene(arguments.binary, path, folder, arguments.well_posed)]
     count = len(arguments.scenes)
     print(f"{count - len(failed)} of {count} scenes agree")
     for path in failed:

@@ -25,7 +25,7 @@ ReplayHeader small_header() {
   header.scene_text = "<scene>\n\t\"quoted\" \\ ü\n</scene>\n";
   header.files = {{"head.obj", hash_of("head")}};
   header.solver = "auto";
-  header.factors = "cholmod";
+  header.factors = "supernodal";
   header.start = -1;
   header.end = 1;
   header.surfaces = {{"sheet", 2, 2}, {"other", 1, 1}};

@@ -28,7 +28,7 @@ std::vector<bool> border_nodes(const TriangleSurface& surface) {
 }
 
 SolverChoice factor_of(SolverChoice choice) {
-  const bool is_factor = choice == SolverChoice::Cholmod || choice == SolverChoice::Eigen;
+  const bool is_factor = choice != SolverChoice::Auto && choice != SolverChoice::Spectral;
   return is_factor ? choice : available_solvers().front();
 }
 

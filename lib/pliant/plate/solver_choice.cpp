@@ -4,15 +4,16 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
+#include "pliant/plate/sparse/supernodal_factor.hpp"
 
 namespace pliant {
 
 std::vector<SolverChoice> available_solvers() {
+  return {SolverChoice::Supernodal,
 #ifdef PLIANT_WITH_CHOLMOD
-  return {SolverChoice::Cholmod, SolverChoice::Eigen, SolverChoice::Spectral};
-#else
-  return {SolverChoice::Eigen, SolverChoice::Spectral};
+          SolverChoice::Cholmod,
 #endif
+          SolverChoice::Eigen, SolverChoice::Spectral};
 }
 
 bool is_available(SolverChoice choice) {
@@ -27,6 +28,8 @@ std::string_view name_of(SolverChoice choice) {
       return "auto";
     case SolverChoice::Spectral:
       return "spectral";
+    case SolverChoice::Supernodal:
+      return "supernodal";
     case SolverChoice::Cholmod:
       return "cholmod";
     default:
@@ -36,13 +39,15 @@ std::string_view name_of(SolverChoice choice) {
 
 std::optional<SolverChoice> solver_choice(std::string_view name) {
   for (const SolverChoice choice :
-       {SolverChoice::Auto, SolverChoice::Spectral, SolverChoice::Cholmod, SolverChoice::Eigen}) {
+       {SolverChoice::Auto, SolverChoice::Spectral, SolverChoice::Supernodal, SolverChoice::Cholmod,
+        SolverChoice::Eigen}) {
     if (name_of(choice) == name) return choice;
   }
   return {};
 }
 
-std::unique_ptr<SparseFactor> make_sparse_factor(SolverChoice choice) {
+std::unique_ptr<SparseFactor> make_sparse_factor(SolverChoice choice, const RunContext& context) {
+  if (choice == SolverChoice::Supernodal) return make_supernodal_factor(context);
 #ifdef PLIANT_WITH_CHOLMOD
   if (choice == SolverChoice::Cholmod) return make_cholmod_factor();
 #endif

@@ -8,10 +8,11 @@ namespace pliant {
 
 /// The solver for the plates of a run. The choice may change the last digits of a result.
 enum class SolverChoice {
-  Auto,      ///< spectral from `worth_transforming` on, else the default of `available_solvers`
-  Spectral,  ///< sine transforms for all rectangles; other outlines as with `Auto`
-  Cholmod,   ///< SuiteSparse, simplicial LDL^T, AMD order; only with PLIANT_WITH_CHOLMOD
-  Eigen,     ///< SimplicialLDLT, AMD order
+  Auto,        ///< spectral from `worth_transforming` on, else supernodal
+  Spectral,    ///< sine transforms for all rectangles; other outlines as with `Auto`
+  Supernodal,  ///< a factor for all plates
+  Cholmod,     ///< SuiteSparse's simplicial LDL^T, to compare; only with PLIANT_WITH_CHOLMOD
+  Eigen,       ///< SimplicialLDLT, to compare
 };
 
 /// The choices that solve all rectangles in one way, as far as this build supports them. The first
@@ -21,7 +22,7 @@ std::vector<SolverChoice> available_solvers();
 /// Whether this build supports it.
 bool is_available(SolverChoice choice);
 
-/// auto, spectral, cholmod, eigen.
+/// auto, spectral, supernodal, cholmod, eigen.
 std::string_view name_of(SolverChoice choice);
 
 /// The choice of that name; nullopt for other names.

@@ -21,12 +21,6 @@ SparseMatrix plate_matrix(double shift) {
   return assemble_upper({is_sanitized ? unit_grid(13, 11) : unit_grid(25, 20), {1, 2, 1}, shift});
 }
 
-FactoredMatrix factor_with(const RunContext& context, SolverChoice choice, bool has_supernodes) {
-  FactoredMatrix factor(choice, context);
-  if (has_supernodes) factor.use_supernodes(baseline_kernels);
-  return factor;
-}
-
 Result<void> factor(FactoredMatrix& factor, const SparseMatrix& matrix, bool has_same_pattern) {
   return factor.factor(matrix.rows(), has_same_pattern, [&] { return matrix; });
 }
@@ -34,7 +28,7 @@ Result<void> factor(FactoredMatrix& factor, const SparseMatrix& matrix, bool has
 std::vector<SolverChoice> factors() {
   std::vector<SolverChoice> choices;
   for (const SolverChoice choice : available_solvers())
-    if (choice == SolverChoice::Cholmod || choice == SolverChoice::Eigen) choices.push_back(choice);
+    if (choice != SolverChoice::Spectral) choices.push_back(choice);
   return choices;
 }
 
@@ -42,17 +36,16 @@ std::vector<SolverChoice> factors() {
 
 TEST_CASE("a factor from the shelf has the bits and the memory of one that is made",
           "[plate][factor][shelf]") {
-  const bool has_supernodes = GENERATE(false, true);
   const SparseMatrix one = plate_matrix(0), other = plate_matrix(3);
   const Field forces = Field::Random(one.rows(), 3);
   for (const SolverChoice choice : factors()) {
-    CAPTURE(name_of(choice), has_supernodes);
+    CAPTURE(name_of(choice));
     Shelf shelf(std::size_t{1} << 30U);
     const RunContext shared{.shelf = &shelf};
-    FactoredMatrix first = factor_with(shared, choice, has_supernodes);
+    FactoredMatrix first(choice, shared);
     REQUIRE(factor(first, one, false));
-    FactoredMatrix alone = factor_with({}, choice, has_supernodes);
-    FactoredMatrix second = factor_with(shared, choice, has_supernodes);
+    FactoredMatrix alone(choice, {});
+    FactoredMatrix second(choice, shared);
     bool has_same_pattern = false;
     // Found, made after a factor that was found, found again, and made in a pattern that is known.
     for (const SparseMatrix& matrix : {one, other, one, plate_matrix(7)}) {
@@ -63,7 +56,7 @@ TEST_CASE("a factor from the shelf has the bits and the memory of one that is ma
       CHECK(second.memory() == alone.memory());
     }
     CHECK(alone.counts().factorizations == 4);
-    CHECK(second.counts().factorizations == (choice == SolverChoice::Cholmod ? 2 : 4));
+    CHECK(second.counts().factorizations == (choice == SolverChoice::Eigen ? 4 : 2));
     // The first one is as it was.
     REQUIRE(factor(alone, one, true));
     CHECK(first.solve(forces).value() == alone.solve(forces).value());
@@ -73,17 +66,15 @@ TEST_CASE("a factor from the shelf has the bits and the memory of one that is ma
 TEST_CASE("a factor from the shelf fits where one that is made fits", "[plate][factor][shelf]") {
   constexpr int parts = is_sanitized ? 10 : 50;
   const SparseMatrix matrix = plate_matrix(0);
-  for (const bool has_supernodes : {false, true}) {
+  for (const SolverChoice choice : factors()) {
     Shelf shelf(std::size_t{1} << 30U);
-    FactoredMatrix first =
-        factor_with({.shelf = &shelf}, available_solvers().front(), has_supernodes);
+    FactoredMatrix first(choice, {.shelf = &shelf});
     REQUIRE(factor(first, matrix, false));
     int count = 0;
     for (std::size_t bytes = 0; bytes < 3 * first.memory(); bytes += first.memory() / parts) {
       const auto outcome = [&](Shelf* from) {
         MemoryBudget budget(bytes);
-        FactoredMatrix own = factor_with({.memory = &budget, .shelf = from},
-                                         available_solvers().front(), has_supernodes);
+        FactoredMatrix own(choice, {.memory = &budget, .shelf = from});
         const auto made = factor(own, matrix, false);
         return made ? std::string() : made.error().message;
       };
@@ -144,10 +135,10 @@ TEST_CASE("complex factors from the shelf have the bits and the memory of those 
 }
 
 TEST_CASE("several threads solve with one factor", "[plate][factor][shelf][threads]") {
-  const bool has_supernodes = GENERATE(false, true);
   const SparseMatrix matrix = plate_matrix(1);
   const Field forces = Field::Random(matrix.rows(), 3);
-  FactoredMatrix alone = factor_with({}, available_solvers().front(), has_supernodes);
+  const SolverChoice choice = GENERATE(from_range(factors()));
+  FactoredMatrix alone(choice, {});
   REQUIRE(factor(alone, matrix, false));
   const Field wanted = alone.solve(forces).value();
   Shelf shelf(std::size_t{1} << 30U);
@@ -157,8 +148,7 @@ TEST_CASE("several threads solve with one factor", "[plate][factor][shelf][threa
     for (int thread = 0; thread < 4; ++thread) {
       threads.emplace_back([&, thread] {
         for (int k = 0; k < 5; ++k) {
-          FactoredMatrix own =
-              factor_with({.shelf = &shelf}, available_solvers().front(), has_supernodes);
+          FactoredMatrix own(choice, {.shelf = &shelf});
           if (!factor(own, matrix, false)) ++wrong[thread];
           for (int n = 0; n < 5; ++n) wrong[thread] += own.solve(forces).value() == wanted ? 0 : 1;
         }

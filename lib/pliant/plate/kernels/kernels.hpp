@@ -193,14 +193,36 @@ struct Supernode {
 constexpr int row_numbers = 4;
 
 /// A factor L D L^T in supernodes. The entries of each are the strict lower triangle of its own
-/// rows, column by column, then the rows below, row by row.
+/// rows, then the rows below, both row by row.
 struct SupernodesView {
-  int size = 0;  ///< rows of L
-  int count = 0;
   const Supernode* supernodes = nullptr;  ///< in the order of their columns
   const int* rows = nullptr;
   const double* entries = nullptr;
   const double* pivots = nullptr;  ///< D
+};
+
+/// Rows of a panel: a matrix's rows, so many at a time, column by column.
+constexpr int panel_rows = 8;
+
+/// Panels of which the columns are eliminated, and the rows of L of these columns: its strict lower
+/// triangle, row by row.
+struct PanelsView {
+  double* panels = nullptr;
+  long stride = 0;  ///< from panel to panel
+  int count = 0;
+  const double* lower = nullptr;
+};
+
+/// Rows, at most four, from which products of rows of L and of panels are subtracted.
+struct ProductsView {
+  double* rows = nullptr;
+  long stride = 0;  ///< from row to row
+  int count = 0;
+  int columns = 0;               ///< of L and of the panels
+  const double* of_l = nullptr;  ///< row by row
+  const double* panels = nullptr;
+  long panel_stride = 0;
+  int panel_count = 0;
 };
 
 /// What a curvature of the first place of a run has of an unknown; the next place has as much of
@@ -318,9 +340,17 @@ struct PlateKernels {
   /// The largest absolute value of so many numbers; leaves out those that are none.
   double (*longest)(long count, const double* numbers);
 
-  /// Solves with a factor for three right-hand sides. `x`: #rows x `row_numbers`, the
-  /// right-hand sides and zeros, then the solutions.
-  void (*solve_supernodes)(const SupernodesView& factor, double* x);
+  /// Subtracts from each column j of first to last - 1 the columns k < j, k < depth, times row j of
+  /// L.
+  void (*reduce_panels)(const PanelsView& view, int first, int last, int depth);
+
+  /// Subtracts from number n of each row the product of its row of L and row n of the panels.
+  void (*subtract_products)(const ProductsView& view);
+
+  /// Solve for three right-hand sides with L of one supernode, and with D L^T of it. `x`: of each
+  /// row `row_numbers`, the right-hand sides and zeros, then the solutions.
+  void (*solve_forward)(const SupernodesView& factor, int supernode, double* x);
+  void (*solve_backward)(const SupernodesView& factor, int supernode, double* x);
 };
 
 /// The kernels that this machine can run, the widest first; the last one runs everywhere. nullptr

@@ -31,6 +31,9 @@ const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {PLIANT_KERNELS_NAME,
                                                             combine,
                                                             add_scaled,
                                                             longest,
-                                                            solve_supernodes};
+                                                            reduce_panels,
+                                                            subtract_products,
+                                                            solve_forward,
+                                                            solve_backward};
 
 }  // namespace pliant

@@ -52,8 +52,9 @@ class CholmodFactor final : public SparseFactor {
     return check(matrix.rows());
   }
 
-  std::size_t entries() const override {
-    return factor_ ? factor_->nzmax : static_cast<std::size_t>(common_.lnz);
+  std::size_t bytes() const override {
+    constexpr std::size_t bytes_of_entry = sizeof(double) + sizeof(int);
+    return bytes_of_entry * (factor_ ? factor_->nzmax : static_cast<std::size_t>(common_.lnz));
   }
 
   // What `cholmod_factorize` does, but some rows at a time.
@@ -104,15 +105,6 @@ class CholmodFactor final : public SparseFactor {
     return Field(Eigen::Map<const Field>(static_cast<const double*>(solution_->x),
                                          right_hand_sides.rows(), 3));
   }
-
-  std::optional<FactorColumns> columns() const override {
-    return FactorColumns{
-        static_cast<int>(factor_->n),        static_cast<const int*>(factor_->Perm),
-        static_cast<const int*>(factor_->p), static_cast<const int*>(factor_->nz),
-        static_cast<const int*>(factor_->i), static_cast<const double*>(factor_->x)};
-  }
-
-  void release() override { factor_.reset(); }
 
   // A solve only reads the factor.
   bool share(const SparseFactor& other) override {

@@ -13,7 +13,9 @@ class EigenFactor final : public SparseFactor {
     return {};
   }
 
-  std::size_t entries() const override { return ldlt_.factor_entries(); }
+  std::size_t bytes() const override {
+    return (sizeof(double) + sizeof(int)) * ldlt_.factor_entries();
+  }
 
   Result<void> factorize(const SparseMatrix& matrix, const StopRequest&) override {
     ldlt_.factorize(matrix);

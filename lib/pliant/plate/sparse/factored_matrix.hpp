@@ -3,13 +3,11 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include "pliant/core/hash.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
-#include "pliant/plate/sparse/supernodal_factor.hpp"
 
 namespace pliant {
 
@@ -20,18 +18,12 @@ class FactoredMatrix {
  public:
   /// Requires: the choice is available.
   FactoredMatrix(SolverChoice choice, const RunContext& context)
-      : choice_(choice),
-        memory_(context.memory),
-        should_stop_(context.should_stop),
-        shelf_(context.shelf) {}
-
-  /// Solves by supernodes if the library shows its factor: twice as fast, but other bits.
-  void use_supernodes(const PlateKernels& kernels) { supernodes_.emplace(kernels); }
+      : choice_(choice), context_(context), memory_(context.memory) {}
 
   /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
   /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
   /// OutOfMemory; SolverFailed if it is not positive definite; Interrupted, but not while the
-  /// library orders the unknowns; those of `assemble`.
+  /// unknowns are ordered; those of `assemble`.
   Result<void> factor(long size, bool has_same_pattern,
                       const std::function<Result<SparseMatrix>()>& assemble);
 
@@ -46,20 +38,16 @@ class FactoredMatrix {
   struct FactorItem;
 
   Result<void> take(long size, std::size_t bytes);
-  Result<void> take_factor(long size, std::size_t entries);
-  Result<void> join_columns(long size);
-  Result<void> use(long size, const FactorItem& item);
+  Result<void> take_factor(long size, const SparseFactor& factor);
+  Result<void> keep_factor(long size);
   Hash key_of(const SparseMatrix& matrix) const;
-  void keep(const Hash& key, const SparseMatrix& matrix, std::size_t entries);
+  void keep(const Hash& key, const SparseMatrix& matrix);
 
   SolverChoice choice_;
+  RunContext context_;
   MemoryShare memory_;
-  StopRequest should_stop_;
-  Shelf* shelf_;
   std::unique_ptr<SparseFactor> factor_;
-  std::optional<SupernodalFactor> supernodes_;
-  bool is_analyzed_ = false;     // by `factor_`
-  bool has_supernodes_ = false;  // of the last factor
+  bool is_analyzed_ = false;  // by `factor_`
   SolverCounts counts_;
 };
 

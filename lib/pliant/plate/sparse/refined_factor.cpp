@@ -12,9 +12,7 @@ constexpr double largest_error = 1e-10;
 }  // namespace
 
 RefinedFactor::RefinedFactor(PreciseMatrix& matrix, SolverChoice choice, const RunContext& context)
-    : matrix_(matrix), should_stop_(context.should_stop), factor_(choice, context) {
-  factor_.use_supernodes(kernels_of_width(context.most_lanes));
-}
+    : matrix_(matrix), should_stop_(context.should_stop), factor_(choice, context) {}
 
 Result<void> RefinedFactor::factor(long size, bool has_same_pattern,
                                    const Eigen::VectorXd& pressure) {

@@ -31,7 +31,7 @@ class PreciseMatrix {
   virtual void close() = 0;
 };
 
-/// A factor by supernodes whose solutions are corrected if rounding makes them wrong by more than
+/// A factor whose solutions are corrected if rounding makes them wrong by more than
 /// 1e-10 of their peak. Internal to plate.
 class RefinedFactor {
  public:
