@@ -1,16 +1,14 @@
-// Measures the cost of a union of boxes, solved by overlapping rectangles in sine space and by a
-// sparse factor: an L, three quarters of a square, and a ring, eight ninths of a square, in frames
-// of 20 backward Euler steps.
+// Measures the cost of a union of boxes: an L, three quarters of a square, and a ring, eight ninths
+// of a square, in frames of 20 backward Euler steps.
 //
-//   first      a new outline: cover and tables, or order of elimination and factor, then the frame
+//   first      a new outline: order of elimination and factor, then the frame
 //   new        new coefficients on the same outline
 //   kept       the same coefficients as in the frame before
-//   rounds     rounds over the rectangles, per step of `kept`
 //   memory     memory of the solver
 //
-// Medians of 5 frames in ms of processor time, one thread; from 300 nodes a side on, of 3 frames,
-// and of 1 with factors. In brackets: the time with a factor as a multiple. Run:
-// build/release/bench/unions [SIDE ...], 101 201 401 by default.
+// Medians of 5 frames in ms of processor time, one thread; from 300 nodes a side on, of 3 frames.
+// In brackets: CHOLMOD's as a multiple. Run: build/release/bench/unions [SIDE ...], 101 201 401 by
+// default.
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +23,6 @@
 #include "measuring.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/plate/plate_solver.hpp"
-#include "pliant/plate/solver_factories.hpp"
 #include "pliant/region/combine.hpp"
 
 namespace {
@@ -61,20 +58,14 @@ PlateProblem problem_on(int side, const std::vector<Box>& boxes) {
 }
 
 struct Times {
-  double first, fresh, kept, rounds;
+  double first, fresh, kept;
   std::size_t memory;
 };
 
-template <class Make>
-Times measure(PlateProblem problem, int repetitions, const Make& make) {
+Times measure(PlateProblem problem, int repetitions, SolverChoice choice) {
   const TimeSteps frame{steps, 1.0 / 24 / steps};
   const Field zero = Field::Zero(problem.outline.grid().node_count(), 3);
   PlateState state{zero, zero};
-  long asked = 0;
-  const RunContext context{.should_stop = [&] {
-    ++asked;
-    return false;
-  }};
   std::unique_ptr<PlateSolver> solver;
   const auto advance = [&] {
     state = value_or_abort(solver->advance(problem, frame, std::move(state)));
@@ -82,36 +73,30 @@ Times measure(PlateProblem problem, int repetitions, const Make& make) {
   Times times{};
   times.first = median_ms(repetitions, [&] {
     solver.reset();
-    solver = make(context);
+    solver = make_plate_solver(choice);
     advance();
   });
   times.fresh = median_ms(repetitions, [&] {
     problem.stiffness.c += 1e-6;
     advance();
   });
-  asked = 0;
   times.kept = median_ms(repetitions, advance);
-  times.rounds = static_cast<double>(asked) / repetitions / steps;
   times.memory = solver->memory();
   return times;
 }
 
 void measure(const char* shape, int side, const std::vector<Box>& boxes) {
   const PlateProblem problem = problem_on(side, boxes);
-  const bool is_small = side < 300;
-  const Times ours = measure(problem, is_small ? 5 : 3, [](const RunContext& context) {
-    return make_schwarz_solver(context);
-  });
-  const SolverChoice choice =
-      is_available(SolverChoice::Cholmod) ? SolverChoice::Supernodal : SolverChoice::Eigen;
-  const Times direct = measure(problem, is_small ? 5 : 1, [&](const RunContext& context) {
-    return make_plate_solver(choice, context);
-  });
+  const int repetitions = side < 300 ? 5 : 3;
+  const Times ours = measure(problem, repetitions, SolverChoice::Supernodal);
+  const Times other = is_available(SolverChoice::Cholmod)
+                          ? measure(problem, repetitions, SolverChoice::Cholmod)
+                          : Times{};
   fmt::print(
-      "| {} | {} | {} | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.0f} ({:.2f}) | {:.1f} | {} | {} |\n",
-      side, shape, unknown_count(problem.outline), ours.first, direct.first / ours.first,
-      ours.fresh, direct.fresh / ours.fresh, ours.kept, direct.kept / ours.kept, ours.rounds,
-      bytes_text(ours.memory), bytes_text(direct.memory));
+      "| {} | {} | {} | {:.0f} ({:.1f}) | {:.0f} ({:.1f}) | {:.0f} ({:.1f}) | {} ({:.2f}) |\n",
+      side, shape, unknown_count(problem.outline), ours.first, other.first / ours.first, ours.fresh,
+      other.fresh / ours.fresh, ours.kept, other.kept / ours.kept, bytes_text(ours.memory),
+      static_cast<double>(other.memory) / static_cast<double>(ours.memory));
   std::fflush(stdout);
 }
 
@@ -122,8 +107,8 @@ int main(int count, char** arguments) {
   for (int k = 1; k < count; ++k) sides.push_back(std::atoi(arguments[k]));
   if (sides.empty()) sides = {101, 201, 401};
   fmt::print(
-      "| side | shape | unknowns | first, ms | new, ms | kept, ms | rounds | memory | factor |\n"
-      "|---|---|---|---|---|---|---|---|---|\n");
+      "| side | shape | unknowns | first, ms | new, ms | kept, ms | memory |\n"
+      "|---|---|---|---|---|---|---|\n");
   for (const int side : sides) {
     if (side < 20) {
       fmt::print(stderr, "unions: a side has 20 nodes or more\n");

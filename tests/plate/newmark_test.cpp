@@ -15,7 +15,7 @@ using namespace pliant::testing;
 
 namespace {
 
-// In sine space, by factors, and by overlapping rectangles.
+// In sine space, by factors, and on a mask.
 struct Case {
   std::string name;
   SolverChoice choice;
@@ -36,7 +36,7 @@ Outline l_shape(int side) {
 std::vector<Case> cases() {
   return {{"sine space", SolverChoice::Spectral, unit_grid(12, 9)},
           {"factor", available_solvers().front(), unit_grid(12, 9)},
-          {"rectangles", SolverChoice::Spectral, l_shape(24)}};
+          {"mask", SolverChoice::Auto, l_shape(24)}};
 }
 
 }  // namespace

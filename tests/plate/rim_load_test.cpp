@@ -46,7 +46,7 @@ TEST_CASE("the rim's part of a load is that of the stencil", "[plate][spectral]"
   }
 }
 
-TEST_CASE("the rim's part of a load is that of the stencil on any outline", "[plate][schwarz]") {
+TEST_CASE("the rim's part of a load is that of the stencil on any outline", "[plate][outline]") {
   for (const int side : {10, 13, 34}) {
     for (const auto& [name, grid, interior] : pliant::testing::union_plates(side)) {
       CAPTURE(name, side);

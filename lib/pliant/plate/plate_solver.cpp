@@ -5,7 +5,6 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/advance.hpp"
-#include "pliant/plate/overlap/rectangle_cover.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
@@ -48,7 +47,7 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
 
  private:
-  enum class Way { Spectral, Schwarz, Direct, Energy };
+  enum class Way { Spectral, Direct, Energy };
 
   PlateSolver& suited(const Outline& outline, const Stiffness& stiffness, bool is_even,
                       bool is_exact = false) {
@@ -68,32 +67,16 @@ class AutomaticPlateSolver final : public PlateSolver {
     if (!transforms() || outline.is_periodic()) return factored;
     // So have exact steps in sine space.
     if (is_exact && factored == Way::Energy) return factored;
-    if (outline.is_rectangle()) {
-      const bool is_worth_it =
-          choice_ == SolverChoice::Spectral || worth_transforming(outline.grid(), stiffness);
-      return is_worth_it ? Way::Spectral : factored;
-    }
-    // Overlapping rectangles have no complex shifts.
+    if (!outline.is_rectangle()) return Way::Direct;
     const bool is_worth_it =
-        !is_exact && worth_iterating(outline.unknown_count(), stiffness) && is_covered(outline);
-    return is_worth_it ? Way::Schwarz : Way::Direct;
-  }
-
-  // Caches the answer for the last outline.
-  bool is_covered(const Outline& outline) {
-    if (!have_same_nodes(outline, asked_for_)) {
-      asked_for_ = outline;
-      is_covered_ = !cover_by_rectangles(outline).empty();
-    }
-    return is_covered_;
+        choice_ == SolverChoice::Spectral || worth_transforming(outline.grid(), stiffness);
+    return is_worth_it ? Way::Spectral : factored;
   }
 
   std::unique_ptr<PlateSolver> make(Way way) const {
     switch (way) {
       case Way::Spectral:
         return make_spectral_solver(context());
-      case Way::Schwarz:
-        return make_schwarz_solver(context());
       case Way::Energy:
         return make_energy_solver(factor(), context());
       default:
@@ -109,8 +92,6 @@ class AutomaticPlateSolver final : public PlateSolver {
   SolverChoice choice_;
   std::unique_ptr<PlateSolver> solver_;
   Way way_ = Way::Direct;
-  Outline asked_for_;
-  bool is_covered_ = false;
   SolverCounts past_counts_;  // of the solvers that were destroyed
 };
 
@@ -145,17 +126,6 @@ bool worth_transforming(const Grid& grid, const Stiffness& stiffness) {
   // How close c may be to its bound, relative to the bound; the solution loses as many digits.
   constexpr double closest = 1e-3;
   return std::min(grid.columns, grid.rows) >= shortest_side &&
-         stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
-}
-
-bool worth_iterating(int unknowns, const Stiffness& stiffness) {
-  // Does not depend on the memory too: another machine would choose another solver and get other
-  // bits.
-  constexpr int most_to_factor = 150'000;
-  // A static L of 100 nodes a side needs 11 rounds with c = 2, 20 with c 5 % from its bound, 40
-  // with 0.05 %; there a larger plate needs more.
-  constexpr double closest = 0.02;
-  return unknowns >= most_to_factor &&
          stiffness.c - stiffness.least_c() >= -closest * stiffness.least_c();
 }
 

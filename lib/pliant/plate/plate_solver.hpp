@@ -74,11 +74,6 @@ class PlateSolver {
 /// to its bound that digits would be lost. Depends on nothing else.
 bool worth_transforming(const Grid& grid, const Stiffness& stiffness);
 
-/// Whether `Auto` and `Spectral` solve a plate of another outline by rectangles in sine space, if
-/// few of them cover it: true if that is faster, unless c is so close to its bound that many rounds
-/// are needed. Depends on nothing else.
-bool worth_iterating(int unknowns, const Stiffness& stiffness);
-
 /// Requires: `choice` is available.
 std::unique_ptr<PlateSolver> make_plate_solver(SolverChoice choice = SolverChoice::Auto,
                                                const RunContext& context = {});

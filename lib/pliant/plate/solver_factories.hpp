@@ -19,9 +19,4 @@ std::unique_ptr<PlateSolver> make_energy_solver(SolverChoice choice = available_
 /// For rectangles, clamped or pinned.
 std::unique_ptr<PlateSolver> make_spectral_solver(const RunContext& context);
 
-/// For outlines that `cover_by_rectangles` covers. If a system needs more than `max_rounds`, its
-/// matrix is factored.
-std::unique_ptr<PlateSolver> make_schwarz_solver(const RunContext& context = {},
-                                                 int max_rounds = 60);
-
 }  // namespace pliant
