@@ -4,33 +4,19 @@
 namespace pliant {
 namespace {
 
-// Numbers of a column of a panel.
-constexpr int panel_parts = panel_rows / lanes;
-struct PanelColumn {
-  Lanes part[panel_parts];
-};
+// A column of a panel is an `Eight`.
+static_assert(panel_rows == 8);
 
-PLIANT_INLINE PanelColumn load_column(const double* from) {
-  PanelColumn result;
+PLIANT_INLINE void subtract(Eight& from, const Eight& column, double factor) {
 #pragma GCC unroll 4
-  for (int k = 0; k < panel_parts; ++k) result.part[k] = load(from + k * lanes);
-  return result;
-}
-PLIANT_INLINE void store_column(double* to, const PanelColumn& column) {
-#pragma GCC unroll 4
-  for (int k = 0; k < panel_parts; ++k) store(to + k * lanes, column.part[k]);
-}
-PLIANT_INLINE void subtract(PanelColumn& from, const PanelColumn& column, double factor) {
-#pragma GCC unroll 4
-  for (int k = 0; k < panel_parts; ++k)
-    from.part[k] = from.part[k] - column.part[k] * (factor - Lanes{});
+  for (int k = 0; k < parts; ++k) from.part[k] = from.part[k] - column.part[k] * (factor - Lanes{});
 }
 
 // Columns `first` to `first + Columns - 1` of `Panels` panels.
 template <int Columns, int Panels>
 PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* lower, int first,
                                   int depth) {
-  PanelColumn sums[Panels][Columns];
+  Eight sums[Panels][Columns];
   const double* of_column[Columns];
 #pragma GCC unroll 4
   for (int j = 0; j < Columns; ++j)
@@ -39,14 +25,13 @@ PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* low
   for (int p = 0; p < Panels; ++p) {
 #pragma GCC unroll 4
     for (int j = 0; j < Columns; ++j)
-      sums[p][j] = load_column(panels + p * stride + static_cast<long>(first + j) * panel_rows);
+      sums[p][j] = load8(panels + p * stride + static_cast<long>(first + j) * panel_rows);
   }
   const int common = first < depth ? first : depth;
   for (int k = 0; k < common; ++k) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p) {
-      const PanelColumn column =
-          load_column(panels + p * stride + static_cast<long>(k) * panel_rows);
+      const Eight column = load8(panels + p * stride + static_cast<long>(k) * panel_rows);
 #pragma GCC unroll 4
       for (int j = 0; j < Columns; ++j) subtract(sums[p][j], column, of_column[j][k]);
     }
@@ -65,7 +50,7 @@ PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* low
   for (int p = 0; p < Panels; ++p) {
 #pragma GCC unroll 4
     for (int j = 0; j < Columns; ++j)
-      store_column(panels + p * stride + static_cast<long>(first + j) * panel_rows, sums[p][j]);
+      store8(panels + p * stride + static_cast<long>(first + j) * panel_rows, sums[p][j]);
   }
 }
 
@@ -96,18 +81,17 @@ PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int
   const double* const panels = view.panels + panel * view.panel_stride;
   const double* const of_l = view.of_l + static_cast<long>(row) * view.columns;
   double* const to = view.rows + row * view.stride + static_cast<long>(panel) * panel_rows;
-  PanelColumn sums[Rows][Panels];
+  Eight sums[Rows][Panels];
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p)
-      sums[r][p] = load_column(to + r * view.stride + p * panel_rows);
+    for (int p = 0; p < Panels; ++p) sums[r][p] = load8(to + r * view.stride + p * panel_rows);
   }
   for (int k = 0; k < view.columns; ++k) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p) {
-      const PanelColumn column =
-          load_column(panels + p * view.panel_stride + static_cast<long>(k) * panel_rows);
+      const Eight column =
+          load8(panels + p * view.panel_stride + static_cast<long>(k) * panel_rows);
 #pragma GCC unroll 4
       for (int r = 0; r < Rows; ++r)
         subtract(sums[r][p], column, of_l[static_cast<long>(r) * view.columns + k]);
@@ -116,8 +100,7 @@ PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p)
-      store_column(to + r * view.stride + p * panel_rows, sums[r][p]);
+    for (int p = 0; p < Panels; ++p) store8(to + r * view.stride + p * panel_rows, sums[r][p]);
   }
 }
 
