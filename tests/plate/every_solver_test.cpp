@@ -136,13 +136,13 @@ TEST_CASE("a factor that is being made can be stopped, and made again", "[plate]
       GENERATE(filter(&is_available, values({SolverChoice::Supernodal, SolverChoice::Cholmod})));
   int asked = 0, patience = 10'000;
   const RunContext context{.should_stop = [&] { return ++asked > patience; }};
-  const PlateSystem system{unit_grid(70, 71), {1, 2, 1}, 0};
+  const PlateSystem system{unit_grid(130, 131), {1, 2, 1}, 0};
   const Field f = Field::Random(unknown_count(system.outline), 3);
   const auto undisturbed = make_plate_solver(choice, context);
   REQUIRE(undisturbed->prepare(system));
   const Field expected = undisturbed->solve(f).value();
   const int times = asked;
-  CHECK(times >= 3);
+  CHECK(times > 10);
   for (const int stop_at : {1, times / 2, times}) {
     const auto solver = make_plate_solver(choice, context);
     asked = 0;

@@ -307,9 +307,12 @@ class SupernodalFactor final : public SparseFactor {
     std::vector<std::optional<Fronts>> fronts(subtrees.size());
     std::vector<Result<void>> results(subtrees.size());
     const FactorTools alone{kernels_, nullptr, should_stop};
+    std::atomic<bool> stopped = false;
     pliant::for_each(threads_, subtrees.size(), [&](std::size_t k) {
+      if (stopped) return;
       fronts[k].emplace(*numbers, alone, subtrees[k], updates);
       results[k] = fronts[k]->factorize(matrix.valuePtr());
+      if (!results[k] && results[k].error().code == ErrorCode::Interrupted) stopped = true;
     });
     for (Result<void>& result : results) {
       if (!result) return std::move(result);
