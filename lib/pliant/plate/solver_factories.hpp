@@ -8,7 +8,7 @@ namespace pliant {
 
 // The implementations behind `make_plate_solver`. Internal to plate.
 
-/// Factors a sparse matrix, by the library of `choice`. Requires: it is available.
+/// Factors a sparse matrix, by the factor of `choice`. Requires: it is available.
 std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice = available_solvers().front(),
                                                 const RunContext& context = {});
 

@@ -184,7 +184,9 @@ TEST_CASE("supernodes solve what a slow factor solves, with the same bits for ev
       REQUIRE(factor->analyze(matrix));
       REQUIRE(factor->factorize(matrix, {}));
       const Field found = factor->solve(forces).value();
-      CHECK((found - expected).cwiseAbs().maxCoeff() <= 1e-11 * expected.cwiseAbs().maxCoeff());
+      // A static plate loses digits.
+      const double error = name == "a plate" ? 1e-11 : 1e-13;
+      CHECK((found - expected).cwiseAbs().maxCoeff() <= error * expected.cwiseAbs().maxCoeff());
       CHECK(factor->solve(forces).value() == found);
       if (k == 0) first = found;
       CHECK(found == first);

@@ -42,7 +42,7 @@ class SparseFactor {
 
   /// Solves with the numbers of another factor, which the two share; this one need not be analyzed.
   /// Several may share the numbers of one at the same time, in several threads. False: nothing has
-  /// changed, since the library cannot do this. Requires: the other is of the same library, and
+  /// changed, since this kind cannot do it. Requires: the other is of the same kind, and
   /// `factorize` succeeded.
   virtual bool share(const SparseFactor&) { return false; }
 };

@@ -50,8 +50,8 @@ struct TriangleState {
 /// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
 class TrianglePlate : private PreciseMatrix {
  public:
-  /// Requires: the first #masses points are free. `choice` is Cholmod or Eigen. `factors` null: the
-  /// material is even.
+  /// Requires: the first #masses points are free. `choice` is one of the factors. `factors` null:
+  /// the material is even.
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
                 const RunContext& context, std::shared_ptr<const CellFactors> factors = {});
 
