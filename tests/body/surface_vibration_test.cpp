@@ -31,7 +31,7 @@ void check_patches(const Mesh& mesh, Border border, int rigid_count, double tole
   for (const TrianglePatch& patch : plan.surface->patches) {
     TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), {});
     const Bending bending = bending_of(inputs, body.surface().unit, border);
-    const Eigen::MatrixXd upper = plate.matrix(bending, 0).value();
+    const Eigen::MatrixXd upper = plate.stiffness(bending).value();
     const Eigen::MatrixXd full = upper.selfadjointView<Eigen::Upper>();
     // Without the slopes, which have no mass.
     const auto nodes = static_cast<Eigen::Index>(patch.masses.size());

@@ -6,12 +6,13 @@
 #include <Eigen/Cholesky>
 
 #include "pliant/plate/small_modes.hpp"
-#include "pliant/plate/sparse/operator.hpp"
 #include "support/catch.hpp"
 #include "support/dense.hpp"
+#include "support/plates.hpp"
 #include "support/sanitized.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using namespace pliant::testing;
 
 namespace {

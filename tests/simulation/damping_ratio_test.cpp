@@ -3,17 +3,18 @@
 #include <vector>
 
 #include "pliant/body/grid_body.hpp"
-#include "pliant/plate/sparse/operator.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/simulation/live.hpp"
 #include "support/catch.hpp"
 #include "support/dense.hpp"
 #include "support/meshes.hpp"
 #include "support/moving_scene.hpp"
+#include "support/plates.hpp"
 #include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using namespace pliant::testing;
 using Catch::Matchers::Contains;
 

@@ -4,9 +4,10 @@
 
 #include <Eigen/Dense>
 
+#include "pliant/plate/energy/grid_assembly.hpp"
 #include "pliant/plate/outline/outline.hpp"
 #include "pliant/plate/plate.hpp"
-#include "pliant/plate/sparse/operator.hpp"
+#include "pliant/plate/sparse/plate_matrix.hpp"
 #include "pliant/plate/stencil.hpp"
 
 namespace pliant::testing {
@@ -25,6 +26,26 @@ inline Field sampled(const Grid& grid, const std::function<double(double, double
     }
   }
   return field;
+}
+
+/// The upper triangle of the matrix that sparse factors solve.
+inline SparseMatrix assemble_upper(const PlateSystem& system) {
+  const GridAssembly assembly(system);
+  PlateMatrix matrix({});
+  if (!matrix.assemble(assembly)) return {};
+  const PlateWeights weights = assembly.weights();
+  return matrix.shifted((system.shift - system.drag) * weights.masses +
+                        system.drag * weights.drags);
+}
+
+/// What a solution leaves of the right-hand sides, in extended precision (#unknowns x 3).
+inline Field residual(const PlateSystem& system, const Field& w, const Field& f) {
+  const GridAssembly assembly(system);
+  PlateMatrix matrix({});
+  if (!matrix.assemble(assembly) || !matrix.open()) return {};
+  const PlateWeights weights = assembly.weights();
+  return matrix.residual(
+      (system.shift - system.drag) * weights.masses + system.drag * weights.drags, w, f);
 }
 
 inline PlateState random_state(const Grid& grid) {

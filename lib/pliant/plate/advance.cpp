@@ -29,10 +29,15 @@ Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& pro
   subtract_rim(outline, problem.stiffness, problem.tangents, state.displacement, load);
   const Field known = interior_of(outline, load);
 
-  const auto solve_step = [&](const Field& w, const Field& v) {
-    return solver.solve(known + shift * w + inertia * v);
-  };
-  return run_steps(context, steps, problem, std::move(state), solve_step);
+  return with_motion(problem, steps, std::move(state),
+                     [&](Motion& motion, const StepFilter& accepts) {
+                       return run_steps(
+                           context, steps, motion,
+                           [&](const Field& w, const Field& v) {
+                             return solver.solve(known + shift * w + inertia * v);
+                           },
+                           accepts);
+                     });
 }
 
 }  // namespace pliant

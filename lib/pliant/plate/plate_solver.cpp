@@ -47,51 +47,33 @@ class AutomaticPlateSolver final : public PlateSolver {
   std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
 
  private:
-  enum class Way { Spectral, Direct, Energy };
-
   PlateSolver& suited(const Outline& outline, const Stiffness& stiffness, bool is_even,
                       bool is_exact = false) {
-    const Way way = is_even ? way_of(outline, stiffness, is_exact) : Way::Energy;
-    if (!solver_ || way != way_) {
+    const bool transforms = is_even && is_transformed(outline, stiffness, is_exact);
+    if (!solver_ || transforms != transforms_) {
       past_counts_ = counts();
       solver_.reset();
-      way_ = way;
-      solver_ = make(way);
+      transforms_ = transforms;
+      solver_ = transforms ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
     }
     return *solver_;
   }
 
-  Way way_of(const Outline& outline, const Stiffness& stiffness, bool is_exact) {
-    // Sparse factors of the stencil have clamped edges only.
-    const Way factored = outline.edges().are_clamped() ? Way::Direct : Way::Energy;
-    if (!transforms() || outline.is_periodic()) return factored;
-    // So have exact steps in sine space.
-    if (is_exact && factored == Way::Energy) return factored;
-    if (!outline.is_rectangle()) return Way::Direct;
-    const bool is_worth_it =
-        choice_ == SolverChoice::Spectral || worth_transforming(outline.grid(), stiffness);
-    return is_worth_it ? Way::Spectral : factored;
+  bool is_transformed(const Outline& outline, const Stiffness& stiffness, bool is_exact) const {
+    if (!may_transform() || outline.is_periodic() || !outline.is_rectangle()) return false;
+    // Exact steps in sine space have clamped edges only.
+    if (is_exact && !outline.edges().are_clamped()) return false;
+    return choice_ == SolverChoice::Spectral || worth_transforming(outline.grid(), stiffness);
   }
 
-  std::unique_ptr<PlateSolver> make(Way way) const {
-    switch (way) {
-      case Way::Spectral:
-        return make_spectral_solver(context());
-      case Way::Energy:
-        return make_energy_solver(factor(), context());
-      default:
-        return make_sparse_solver(factor(), context());
-    }
-  }
-
-  bool transforms() const {
+  bool may_transform() const {
     return choice_ == SolverChoice::Auto || choice_ == SolverChoice::Spectral;
   }
-  SolverChoice factor() const { return transforms() ? available_solvers().front() : choice_; }
+  SolverChoice factor() const { return may_transform() ? available_solvers().front() : choice_; }
 
   SolverChoice choice_;
   std::unique_ptr<PlateSolver> solver_;
-  Way way_ = Way::Direct;
+  bool transforms_ = false;
   SolverCounts past_counts_;  // of the solvers that were destroyed
 };
 

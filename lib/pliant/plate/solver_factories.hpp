@@ -8,12 +8,8 @@ namespace pliant {
 
 // The implementations behind `make_plate_solver`. Internal to plate.
 
-/// Factors a sparse matrix, by the factor of `choice`. Requires: it is available.
+/// For all plates. Factors a sparse matrix, by the factor of `choice`. Requires: it is available.
 std::unique_ptr<PlateSolver> make_sparse_solver(SolverChoice choice = available_solvers().front(),
-                                                const RunContext& context = {});
-
-/// For plates that are not even, and for pinned edges. Factors a sparse matrix.
-std::unique_ptr<PlateSolver> make_energy_solver(SolverChoice choice = available_solvers().front(),
                                                 const RunContext& context = {});
 
 /// For rectangles, clamped or pinned.

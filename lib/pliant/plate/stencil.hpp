@@ -26,36 +26,19 @@ struct Stencil {
   /// columns and rows away; far(di, dj) at the four nodes two steps away, or at their ghosts.
   template <class Near, class Far>
   Real apply(const Near& near, const Far& far) const {
-    const Differences x = differences(near, far);
-    return b * x.uuuu + c * x.uuvv + d * x.vvvv;
-  }
-
-  /// shift w + L w.
-  template <class Near, class Far>
-  Real apply(double shift, const Near& near, const Far& far) const {
-    const Differences x = differences(near, far);
-    return shift * near(0, 0) + b * x.uuuu + c * x.uuvv + d * x.vvvv;
-  }
-
-  Real b, c, d;  ///< the stiffness including the divisors: b/hu^4, c/(hu^2 hv^2), d/hv^4
-
- private:
-  struct Differences {
-    Real uuuu, uuvv, vvvv;
-  };
-
-  template <class Near, class Far>
-  static Differences differences(const Near& near, const Far& far) {
     const Real here = near(0, 0);
     const Real below = near(0, -1), above = near(0, 1);
     const Real beside_u = near(-1, 0) + near(1, 0);
     const Real beside_v = below + above;
     const Real corners = near(-1, -1) + near(1, -1) + near(-1, 1) + near(1, 1);
     // Eq. (4): (1 -4 6 -4 1) along each direction. Eq. (5): (1 -2 1) x (1 -2 1) mixed.
-    return {(far(-2, 0) + far(2, 0)) - 4 * beside_u + 6 * here,
-            corners - 2 * (beside_u + below + above) + 4 * here,
-            (far(0, -2) + far(0, 2)) - 4 * beside_v + 6 * here};
+    const Real uuuu = (far(-2, 0) + far(2, 0)) - 4 * beside_u + 6 * here;
+    const Real uuvv = corners - 2 * (beside_u + below + above) + 4 * here;
+    const Real vvvv = (far(0, -2) + far(0, 2)) - 4 * beside_v + 6 * here;
+    return b * uuuu + c * uuvv + d * vvvv;
   }
+
+  Real b, c, d;  ///< the stiffness including the divisors: b/hu^4, c/(hu^2 hv^2), d/hv^4
 };
 
 /// The stencil of shift + L gathered by neighbour, without what the rim adds: eq. (4), (5), (7).

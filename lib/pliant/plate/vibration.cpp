@@ -129,7 +129,7 @@ Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, d
                            .context = plate.context(),
                            .shift = shift};
   if (shift > 0) return vibrating;
-  vibrating.matrix = [&plate, bending] { return plate.matrix(bending, 0); };
+  vibrating.matrix = [&plate, bending] { return plate.stiffness(bending); };
   vibrating.solver = plate.solver();
   vibrating.shifted = [&plate, bending, solve](double other) -> Result<VibratingPlate::Solve> {
     if (auto ready = plate.prepare(bending, other); !ready) return fail(ready.error());

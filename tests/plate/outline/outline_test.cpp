@@ -17,7 +17,9 @@
 
 using namespace pliant;
 using pliant::testing::apply_stencil;
+using pliant::testing::assemble_upper;
 using pliant::testing::eigenvalues_of;
+using pliant::testing::residual;
 using pliant::testing::sampled;
 using pliant::testing::unit_grid;
 

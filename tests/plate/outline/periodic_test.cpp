@@ -11,6 +11,8 @@
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
+using pliant::testing::residual;
 using namespace pliant::testing;
 
 namespace {

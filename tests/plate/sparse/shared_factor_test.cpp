@@ -6,12 +6,12 @@
 #include "pliant/core/shelf.hpp"
 #include "pliant/plate/exact/sparse_motion.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
-#include "pliant/plate/sparse/operator.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/sanitized.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using pliant::testing::is_sanitized;
 using pliant::testing::unit_grid;
 
@@ -19,10 +19,6 @@ namespace {
 
 SparseMatrix plate_matrix(double shift) {
   return assemble_upper({is_sanitized ? unit_grid(13, 11) : unit_grid(25, 20), {1, 2, 1}, shift});
-}
-
-Result<void> factor(FactoredMatrix& factor, const SparseMatrix& matrix, bool has_same_pattern) {
-  return factor.factor(matrix.rows(), has_same_pattern, [&] { return matrix; });
 }
 
 std::vector<SolverChoice> factors() {
@@ -43,14 +39,14 @@ TEST_CASE("a factor from the shelf has the bits and the memory of one that is ma
     Shelf shelf(std::size_t{1} << 30U);
     const RunContext shared{.shelf = &shelf};
     FactoredMatrix first(choice, shared);
-    REQUIRE(factor(first, one, false));
+    REQUIRE(first.factor(one, false));
     FactoredMatrix alone(choice, {});
     FactoredMatrix second(choice, shared);
     bool has_same_pattern = false;
     // Found, made after a factor that was found, found again, and made in a pattern that is known.
     for (const SparseMatrix& matrix : {one, other, one, plate_matrix(7)}) {
-      REQUIRE(factor(alone, matrix, has_same_pattern));
-      REQUIRE(factor(second, matrix, has_same_pattern));
+      REQUIRE(alone.factor(matrix, has_same_pattern));
+      REQUIRE(second.factor(matrix, has_same_pattern));
       has_same_pattern = true;
       CHECK(second.solve(forces).value() == alone.solve(forces).value());
       CHECK(second.memory() == alone.memory());
@@ -58,7 +54,7 @@ TEST_CASE("a factor from the shelf has the bits and the memory of one that is ma
     CHECK(alone.counts().factorizations == 4);
     CHECK(second.counts().factorizations == (choice == SolverChoice::Eigen ? 4 : 2));
     // The first one is as it was.
-    REQUIRE(factor(alone, one, true));
+    REQUIRE(alone.factor(one, true));
     CHECK(first.solve(forces).value() == alone.solve(forces).value());
   }
 }
@@ -69,13 +65,13 @@ TEST_CASE("a factor from the shelf fits where one that is made fits", "[plate][f
   for (const SolverChoice choice : factors()) {
     Shelf shelf(std::size_t{1} << 30U);
     FactoredMatrix first(choice, {.shelf = &shelf});
-    REQUIRE(factor(first, matrix, false));
+    REQUIRE(first.factor(matrix, false));
     int count = 0;
     for (std::size_t bytes = 0; bytes < 3 * first.memory(); bytes += first.memory() / parts) {
       const auto outcome = [&](Shelf* from) {
         MemoryBudget budget(bytes);
         FactoredMatrix own(choice, {.memory = &budget, .shelf = from});
-        const auto made = factor(own, matrix, false);
+        const auto made = own.factor(matrix, false);
         return made ? std::string() : made.error().message;
       };
       CHECK(outcome(&shelf) == outcome(nullptr));
@@ -139,7 +135,7 @@ TEST_CASE("several threads solve with one factor", "[plate][factor][shelf][threa
   const Field forces = Field::Random(matrix.rows(), 3);
   const SolverChoice choice = GENERATE(from_range(factors()));
   FactoredMatrix alone(choice, {});
-  REQUIRE(factor(alone, matrix, false));
+  REQUIRE(alone.factor(matrix, false));
   const Field wanted = alone.solve(forces).value();
   Shelf shelf(std::size_t{1} << 30U);
   std::vector<int> wrong(4);
@@ -149,7 +145,7 @@ TEST_CASE("several threads solve with one factor", "[plate][factor][shelf][threa
       threads.emplace_back([&, thread] {
         for (int k = 0; k < 5; ++k) {
           FactoredMatrix own(choice, {.shelf = &shelf});
-          if (!factor(own, matrix, false)) ++wrong[thread];
+          if (!own.factor(matrix, false)) ++wrong[thread];
           for (int n = 0; n < 5; ++n) wrong[thread] += own.solve(forces).value() == wanted ? 0 : 1;
         }
       });

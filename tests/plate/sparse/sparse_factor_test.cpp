@@ -1,10 +1,10 @@
 #include "pliant/plate/sparse/sparse_factor.hpp"
 
-#include "pliant/plate/sparse/operator.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using pliant::testing::unit_grid;
 
 TEST_CASE("a factor takes the bytes that its analysis tells", "[plate][factor]") {

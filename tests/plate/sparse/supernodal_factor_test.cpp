@@ -15,13 +15,13 @@
 
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
-#include "pliant/plate/sparse/operator.hpp"
 #include "pliant/plate/sparse/supernode_pattern.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
 #include "support/sanitized.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using pliant::testing::is_sanitized;
 using pliant::testing::unit_grid;
 
@@ -283,11 +283,10 @@ TEST_CASE("a factor is stopped within its supernodes", "[plate][factor][stop]") 
 
 TEST_CASE("a factor reserves what making it takes, then what remains", "[plate][factor]") {
   const SparseMatrix matrix = assemble_upper({unit_grid(60, 60), {1, 2, 1}, 0});
-  const auto assemble = [&] { return matrix; };
   const auto probe = make_supernodal_factor({});
   REQUIRE(probe->analyze(matrix));
   FactoredMatrix plain(SolverChoice::Supernodal, {});
-  REQUIRE(plain.factor(matrix.rows(), false, assemble));
+  REQUIRE(plain.factor(matrix, false));
   const auto with_budget = [&](std::size_t bytes, const auto& check) {
     MemoryBudget budget(bytes);
     FactoredMatrix factor(SolverChoice::Supernodal, {.memory = &budget});
@@ -295,14 +294,14 @@ TEST_CASE("a factor reserves what making it takes, then what remains", "[plate][
   };
   const std::size_t most = plain.memory() + probe->work_bytes();
   with_budget(most - 1, [&](FactoredMatrix& factor) {
-    const auto made = factor.factor(matrix.rows(), false, assemble);
+    const auto made = factor.factor(matrix, false);
     REQUIRE_FALSE(made);
     CHECK(made.error().code == ErrorCode::OutOfMemory);
   });
   with_budget(most, [&](FactoredMatrix& factor) {
-    REQUIRE(factor.factor(matrix.rows(), false, assemble));
+    REQUIRE(factor.factor(matrix, false));
     CHECK(factor.memory() == plain.memory());
-    REQUIRE(factor.factor(matrix.rows(), true, assemble));
+    REQUIRE(factor.factor(matrix, true));
     CHECK(factor.solve(Field::Random(matrix.rows(), 3)));
   });
 }

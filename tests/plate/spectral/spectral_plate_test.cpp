@@ -11,6 +11,7 @@
 #include "support/sanitized.hpp"
 
 using namespace pliant;
+using pliant::testing::residual;
 using pliant::testing::random_state;
 using pliant::testing::unit_grid;
 

@@ -43,8 +43,8 @@ Result<void> FactoredMatrix::keep_factor(long size) {
   return take(size, bytes_to_factorize * size + factor_->bytes());
 }
 
-Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
-                                    const std::function<Result<SparseMatrix>()>& assemble) try {
+Result<void> FactoredMatrix::factor(const SparseMatrix& matrix, bool has_same_pattern) try {
+  const long size = matrix.cols();
   if (!has_same_pattern || !factor_ || !is_analyzed_) {
     // Frees the old factor first, to make room for the new one.
     factor_.reset();
@@ -52,9 +52,6 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
     is_analyzed_ = false;
     if (auto taken = take(size, bytes_to_analyze * size); !taken) return taken;
   }
-  const Result<SparseMatrix> assembled = assemble();
-  if (!assembled) return fail(assembled.error());
-  const SparseMatrix& matrix = *assembled;
   const Hash key = context_.shelf ? key_of(matrix) : Hash();
   if (context_.shelf) {
     const auto item = context_.shelf->find<FactorItem>(key, [&](const FactorItem& one) {
@@ -79,7 +76,7 @@ Result<void> FactoredMatrix::factor(long size, bool has_same_pattern,
   if (context_.shelf) keep(key, matrix);
   return keep_factor(size);
 } catch (const std::bad_alloc&) {  // the only way in which Eigen reports it
-  return fail(no_memory_for_factor(size));
+  return fail(no_memory_for_factor(matrix.cols()));
 }
 
 // All that a factor depends on.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <memory>
 
 #include "pliant/core/hash.hpp"
@@ -20,12 +19,10 @@ class FactoredMatrix {
   FactoredMatrix(SolverChoice choice, const RunContext& context)
       : choice_(choice), context_(context), memory_(context.memory) {}
 
-  /// Factors the matrix that `assemble` makes, of `size` rows; its upper triangle.
-  /// `has_same_pattern`: its pattern is that of the last matrix that was factored. Errors:
-  /// OutOfMemory; SolverFailed if it is not positive definite; Interrupted, but not while the
-  /// unknowns are ordered; those of `assemble`.
-  Result<void> factor(long size, bool has_same_pattern,
-                      const std::function<Result<SparseMatrix>()>& assemble);
+  /// Factors a matrix, of which the upper triangle is given. `has_same_pattern`: its pattern is
+  /// that of the last one that was factored. Errors: OutOfMemory; SolverFailed if it is not
+  /// positive definite; Interrupted, but not while the unknowns are ordered.
+  Result<void> factor(const SparseMatrix& matrix, bool has_same_pattern);
 
   /// Solves for three right-hand sides (#rows x 3). Requires: `factor` succeeded last.
   Result<Field> solve(const Field& right_hand_sides);

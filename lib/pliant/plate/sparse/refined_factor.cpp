@@ -11,28 +11,24 @@ constexpr double largest_error = 1e-10;
 
 }  // namespace
 
-RefinedFactor::RefinedFactor(PreciseMatrix& matrix, SolverChoice choice, const RunContext& context)
+RefinedFactor::RefinedFactor(PlateMatrix& matrix, SolverChoice choice, const RunContext& context)
     : matrix_(matrix), should_stop_(context.should_stop), factor_(choice, context) {}
 
-Result<void> RefinedFactor::factor(long size, bool has_same_pattern,
-                                   const Eigen::VectorXd& pressure) {
-  SparseMatrix upper;
-  auto factored = factor_.factor(size, has_same_pattern, [&] {
-    auto made = matrix_.upper();
-    if (made) upper = *made;
-    return made;
-  });
-  if (!factored) return factored;
-  return measure(upper, pressure);
+Result<void> RefinedFactor::factor(const Eigen::VectorXd& shifts, bool has_same_pattern,
+                                   const Eigen::VectorXd& pressure, bool corrects) {
+  shifts_ = shifts;
+  const SparseMatrix upper = matrix_.shifted(shifts);
+  if (auto factored = factor_.factor(upper, has_same_pattern); !factored) return factored;
+  return measure(upper, pressure, corrects);
 }
 
 // Finds the error of a solution: if it is too large, all are corrected.
-Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure) {
-  error_ = 0;
+Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure,
+                                    bool corrects) {
+  refines_ = false;
   matrix_.close();
-  rows_ = pressure.size();
   Field forces = Field::Zero(upper.rows(), 3);
-  forces.col(0).head(rows_) = pressure;
+  forces.col(0).head(pressure.size()) = pressure;
   if (is_stopped(should_stop_)) return interrupted();
   auto solution = factor_.solve(forces);
   if (!solution) return fail(solution.error());
@@ -43,17 +39,15 @@ Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::Vect
   rough.col(0) = forces.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
   const auto first = factor_.solve(rough);
   if (!first) return fail(first.error());
-  if (peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
-  if (auto opened = matrix_.open(static_cast<std::size_t>(upper.nonZeros())); !opened)
-    return opened;
-  const Field left = matrix_.residual(*solution, forces);
+  if (!corrects && peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+  if (auto opened = matrix_.open(); !opened) return opened;
+  const Field left = matrix_.residual(shifts_, *solution, forces);
   if (is_stopped(should_stop_)) return interrupted();
   const auto correction = factor_.solve(left);
   if (!correction) return fail(correction.error());
   error_ = peak(*correction) / peak(*solution);
-  if (error_ > largest_error) return {};
-  error_ = 0;
-  matrix_.close();
+  refines_ = corrects || error_ > largest_error;
+  if (!refines_) matrix_.close();
   return {};
 }
 
@@ -67,7 +61,7 @@ Result<Field> RefinedFactor::solve(const Field& right_hand_sides, std::optional<
   double before = std::numeric_limits<double>::infinity();
   for (int pass = 0; solution && pass < most_passes; ++pass) {
     if (is_stopped(should_stop_)) return interrupted();
-    auto correction = factor_.solve(matrix_.residual(*solution, right_hand_sides));
+    auto correction = factor_.solve(matrix_.residual(shifts_, *solution, right_hand_sides));
     if (!correction) return correction;
     *solution += *correction;
     const double change = peak(*correction);

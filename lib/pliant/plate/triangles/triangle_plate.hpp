@@ -11,9 +11,8 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/core/triangle_cells.hpp"
-#include "pliant/plate/exact/sparse_motion.hpp"
 #include "pliant/plate/plate.hpp"
-#include "pliant/plate/sparse/refined_factor.hpp"
+#include "pliant/plate/sparse/sparse_plate.hpp"
 #include "pliant/plate/time_steps.hpp"
 #include "pliant/plate/triangles/cell_block.hpp"
 #include "pliant/plate/triangles/inner_unknowns.hpp"
@@ -48,17 +47,16 @@ struct TriangleState {
 /// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
 /// cells' bending energy and M has the masses of the first points on its diagonal. Slopes, and
 /// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
-class TrianglePlate : private PreciseMatrix {
+class TrianglePlate : private PlateAssembly {
  public:
   /// Requires: the first #masses points are free. `choice` is one of the factors. `factors` null:
   /// the material is even.
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
                 const RunContext& context, std::shared_ptr<const CellFactors> factors = {});
 
-  /// Prepares to solve K + shift M; `drag` is the part of the shift that a map of damping changes,
-  /// that of density the rest. Reuse: does nothing if all are those of the last call. Errors:
-  /// SolverFailed if the matrix is not positive definite; OutOfMemory.
-  Result<void> prepare(const Bending& bending, double shift, double drag = 0);
+  /// Prepares to solve K + shift M, for vibrations. Reuse: does nothing if both are those of the
+  /// last call. Errors: SolverFailed if the matrix is not positive definite; OutOfMemory.
+  Result<void> prepare(const Bending& bending, double shift);
 
   /// Solves for forces on the points with a mass (#masses x 3) on a plate whose held points and
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
@@ -70,9 +68,9 @@ class TrianglePlate : private PreciseMatrix {
   Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                                 TriangleState state);
 
-  /// The upper triangle of K + shift M that is factored: without unknowns that belong to one block
-  /// of cells. Errors: Interrupted.
-  Result<SparseMatrix> matrix(const Bending& bending, double shift, double drag = 0) const;
+  /// K: the upper triangle of what is factored, without unknowns that belong to one block of cells.
+  /// Errors: OutOfMemory; Interrupted.
+  Result<SparseMatrix> stiffness(const Bending& bending);
 
   const TriangleCells& cells() const { return cells_; }
 
@@ -84,14 +82,12 @@ class TrianglePlate : private PreciseMatrix {
   const CellFactors* factors() const { return factors_.get(); }
 
   /// The masses times the factors of density. (#masses)
-  Eigen::VectorXd weighted_masses() const;
+  Eigen::VectorXd weighted_masses() const { return weights().masses; }
 
   const RunContext& context() const { return context_; }
   SolverChoice solver() const { return solver_; }
-  SolverCounts counts() const { return factor_.counts() + motion_.counts(); }
-  std::size_t memory() const {
-    return factor_.memory() + motion_.memory() + plastic_share_.bytes();
-  }
+  SolverCounts counts() const { return plate_.counts(); }
+  std::size_t memory() const { return plate_.memory() + plastic_share_.bytes(); }
 
  private:
   class FlowingTriangles;
@@ -103,55 +99,33 @@ class TrianglePlate : private PreciseMatrix {
     PlasticTriangles triangles;
   };
 
-  class ElasticSteps;
-
+  Result<void> bend(const Bending& bending);
   Result<Field> reduced(const Field& forces) const;
-  Field held_forces(const Bending& bending, const GivenSlopes& slopes,
-                    const Field& displacement) const;
+  Field held_forces(const GivenSlopes& slopes, const Field& displacement) const;
   Result<void> prepare_plasticity();
-  Result<TriangleState> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
-                                        TriangleState state);
-  Result<TriangleState> advance_exactly(const TriangleProblem& problem, const TimeSteps& steps,
-                                        TriangleState state);
-  using Extended = long double;
-  enum class Half { Lower, Both };
+  Result<void> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
+                               TriangleState& state, Motion& motion);
 
-  // A sparse matrix by rows, its columns ascending.
+  int size() const override { return reduced_.count; }
+  PlateWeights weights() const override;
+  std::size_t most_entries() const override;
+  Result<Entries<double>> entries() const override { return entries_of<double>(); }
+  Result<Entries<long double>> precise_entries() const override {
+    return entries_of<long double>();
+  }
   template <class Real>
-  struct Rows {
-    std::vector<std::size_t> starts = {0};  // #rows + 1
-    std::vector<int> columns = {};
-    std::vector<Real> values = {};
-  };
-
-  template <class Real>
-  Result<Rows<Real>> rows(const Bending& bending, double shift, double drag, Half half) const;
-
-  // What the shift adds to the matrix at a point with a mass.
-  template <class Real>
-  Real shift_at(int point, double shift, double drag) const;
-
-  Result<SparseMatrix> upper() const override { return matrix(bending_, shift_, drag_); }
-  Result<void> open(std::size_t entries) override;
-  Field residual(const Field& x, const Field& f) const override;
-  void close() override;
+  Result<Entries<Real>> entries_of() const;
 
   TriangleCells cells_;
   std::vector<double> masses_;
   std::vector<int> triangles_;
   std::shared_ptr<const CellFactors> factors_;
-  const CellFactors* elastic_;  // the same, if an elastic plate has some
   RunContext context_;
   SolverChoice solver_;
   ReducedUnknowns reduced_;  // those of the matrix
-  RefinedFactor factor_;
-  bool is_factored_ = false;
-  Bending bending_;  // of the factored matrix
-  double shift_ = 0, drag_ = 0;
-
-  Rows<Extended> precise_;  // the factored matrix, if solutions are refined
-  MemoryShare precise_share_;
-  SparseMotion motion_;
+  Bending bending_;          // of the matrix
+  bool is_bent_ = false;     // whether there is a matrix
+  SparsePlate plate_;
   std::optional<Plasticity> plasticity_;
   MemoryShare plastic_share_;
 };

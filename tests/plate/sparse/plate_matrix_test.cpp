@@ -1,5 +1,3 @@
-#include "pliant/plate/sparse/operator.hpp"
-
 #include <cmath>
 
 #include "support/catch.hpp"
@@ -7,8 +5,10 @@
 #include "support/plates.hpp"
 
 using namespace pliant;
+using pliant::testing::assemble_upper;
 using pliant::testing::dense_operator;
 using pliant::testing::eigenvalues_of;
+using pliant::testing::residual;
 using pliant::testing::unit_grid;
 using pliant::testing::WithinAbs;
 using pliant::testing::WithinRel;
