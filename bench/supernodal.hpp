@@ -5,7 +5,7 @@
 #include <cholmod.h>
 
 #include "pliant/plate/plate_solver.hpp"
-#include "pliant/plate/sparse/operator.hpp"
+#include "support/plates.hpp"
 
 namespace pliant::bench {
 
@@ -76,7 +76,7 @@ class SupernodalSolver final : public PlateSolver {
 
   Result<void> prepare(const PlateSystem& system) override {
     if (factored_ == system) return {};
-    factor_.factor(assemble_upper(system));
+    factor_.factor(testing::assemble_upper(system));
     if (!factor_.is_good()) return fail(ErrorCode::SolverFailed, "supernodal");
     factored_ = system;
     return {};

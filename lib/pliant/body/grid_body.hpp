@@ -3,12 +3,12 @@
 #include <memory>
 #include <vector>
 
-#include "pliant/body/body.hpp"
-#include "pliant/body/workspace.hpp"
+#include "pliant/body/elastic_body.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/solver_cache.hpp"
 #include "pliant/plate/vibration_cache.hpp"
+#include "pliant/region/node_tiles.hpp"
 
 namespace pliant {
 
@@ -22,8 +22,10 @@ std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& pat
 /// Poisson's ratio of a patch's plate: 0 where it has no effect.
 double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactors* factors);
 
-/// One elastic surface as a grid of nodes. Thesis 5.3; SPEC 6.
-class GridBody final : public Body {
+/// One elastic surface as a grid of nodes. Its step allocates nothing while the regions stay the
+/// same, plates are solved in sine space, no node recovers and the grid is open. Thesis 5.3;
+/// SPEC 6.
+class GridBody final : public ElasticBody {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
   /// `solver` and `context` are those of its plates; the context's profile receives the times of
@@ -34,36 +36,52 @@ class GridBody final : public Body {
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 
-  /// Nothing is allocated while the regions stay the same, plates are solved in sine space, no node
-  /// recovers and the grid is open.
-  Result<void> step(const BodyInputs& inputs) override;
-
-  const StepPlan& last_step() const override { return work_.plan; }
   Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const override;
   SolverCounts solver_counts() const override { return solvers_.counts(); }
 
   const Grid& grid() const { return grid_; }
 
  private:
-  Result<void> plan(const BodyInputs& inputs, BodyWorkspace& work) const;
-  void find_lost(const BodyInputs& inputs, BodyWorkspace& work) const;
-  void begin_next();
-  void keep_solvers();
-  Result<void> solve(const BodyInputs& inputs);
-  void fit_factors(const Patch& patch, PatchSolve& one) const;
-  Result<Dynamics> dynamics_of(const BodyInputs& inputs, const Region& region, std::size_t place);
-  void begin_load(const Box& box, PlateProblem& problem) const;
-  template <class F>
-  void for_each_moved(const F& f) const;
-  void keep_push(const BodyInputs& inputs);
-  Result<void> take();
-  void mark_unsettled();
+  // Memory for a selection.
+  struct Room {
+    NodeTiles tiles;       // of the nodes that forces measure
+    Field measured;        // these nodes, if the rest shape is animated
+    NodeTiles rest_tiles;  // of the nodes at rest, if needed
+    std::vector<std::uint8_t> marks;
+  };
+
+  struct Solve final : BodyPatch {
+    PlateInterval& interval() override { return problem; }
+
+    const Patch* patch = nullptr;
+    Box box = {};  // that of the problem's factors; empty: of none yet
+    PlateProblem problem;
+  };
+
+  Result<void> plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const;
+  void find_lost(const BodyInputs& inputs, Room& room, Selection& selection) const;
+  void keep_outlines();
+  void find_rows(Solve& one) const;
+
+  Result<void> select(const BodyInputs& inputs, StepPlan& plan) override {
+    return this->plan(inputs, room_, plan);
+  }
+  void keep_patches(const BodyInputs& inputs) override;
+  std::size_t patch_count() const override { return solves_.size(); }
+  BodyPatch& patch(std::size_t k) override { return solves_[k]; }
+  std::string not_held(std::size_t k) const override;
+  void take_material(const BodyInputs& inputs, std::size_t k) override;
+  Result<double> smallest_eigenvalue_of(std::size_t k) override;
+  EdgeTangents tangents_of(const EdgeTangents& tangents, std::size_t k) const override;
+  void find_load(const BodyInputs& inputs, std::size_t k) override;
+  void find_displacement(std::size_t k) override;
+  Result<void> advance(std::size_t k) override;
 
   Grid grid_;
-  RunContext context_;
   SolverCache solvers_;
   VibrationCache vibrations_;
-  BodyWorkspace work_;
+  Room room_;
+  std::vector<Solve> solves_;  // one for each patch, in the order of the regions
 };
 
 }  // namespace pliant

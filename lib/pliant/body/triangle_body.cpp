@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "pliant/core/expects.hpp"
-#include "pliant/core/stage_timer.hpp"
-#include "pliant/plate/swing.hpp"
 #include "pliant/plate/vibration.hpp"
 
 namespace pliant {
@@ -104,21 +101,21 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
 TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
                            const BodySettings& settings, SolverChoice solver, RunContext context,
                            std::shared_ptr<const NodeFactors> factors)
-    : Body(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
-           std::move(factors)),
+    : ElasticBody(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
+                  std::move(context), std::move(factors)),
       surface_(std::move(surface)),
       tree_(std::move(tree)),
       is_border_(border_nodes(*surface_)),
       settling_length_(1e-6 * length_of(surface_->rest.colwise().maxCoeff() -
                                         surface_->rest.colwise().minCoeff())),
-      solver_(factor_of(solver)),
-      context_(std::move(context)) {
+      solver_(factor_of(solver)) {
   PLIANT_EXPECTS(settings.reference == Reference::Rest);
 }
 
 SolverCounts TriangleBody::solver_counts() const {
   SolverCounts counts = past_counts_;
-  for (const PatchSolve& one : solves_) counts = counts + one.plate->counts();
+  for (const Solve& one : solves_)
+    if (one.plate) counts = counts + one.plate->counts();
   return counts;
 }
 
@@ -238,137 +235,108 @@ Result<void> TriangleBody::weigh(const TriangleSurface& surface, const PointTree
   return {};
 }
 
-Result<void> TriangleBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && waits_for_forces()) {
-    plan_ = {};
-    return {};
-  }
-  StageTimer planning(context_.profile, Stage::Selection);
-  if (auto planned = plan(inputs, plan_); !planned) return planned;
-  planning.stop();
-  if (!plan_.solves()) {
-    put_at_rest(plan_.settling);
-    return {};
-  }
-  // Builds the next state beside the current one, which is kept until the next one is complete.
-  next_positions_ = state_.positions;
-  for (const int node : plan_.settling) next_positions_.row(node) = rest_.row(node);
-  next_velocities_.setZero(rest_.rows(), 3);
-  if (remembers_push()) {
-    next_push_ = nothing_pushed();
-    next_push_.tangents = inputs.tangents;
-  }
-  keep_plates();
-  if (auto solved = solve(inputs); !solved) return solved;
-  const StageTimer ending(context_.profile, Stage::StateOut);
-  return take();
-}
-
-// Makes a plate of each patch that moves; one whose cells are those of an earlier plate keeps it.
-void TriangleBody::keep_plates() {
-  std::vector<PatchSolve> earlier = std::exchange(solves_, {});
-  for (const TrianglePatch& patch : plan_.surface->patches) {
-    if (!patch.moves()) continue;
-    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const PatchSolve& one) {
-      return one.plate && one.plate->cells() == patch.cells && one.plate->masses() == patch.masses;
+// A patch that moves has a plate; if its cells are those of an earlier plate, it keeps that one.
+void TriangleBody::keep_patches(const BodyInputs&) {
+  std::vector<Solve> earlier = std::exchange(solves_, {});
+  const TriangleSelection& selection = *plan_.surface;
+  for (const TrianglePatch& patch : selection.patches) {
+    const auto same = std::find_if(earlier.begin(), earlier.end(), [&](const Solve& one) {
+      return patch.moves() && one.plate && one.plate->cells() == patch.cells &&
+             one.plate->masses() == patch.masses;
     });
-    solves_.push_back(same != earlier.end() ? std::move(*same) : PatchSolve{});
+    solves_.push_back(same != earlier.end() ? std::move(*same) : Solve{});
   }
   // Plates that are gone make room for new ones.
-  for (PatchSolve& one : earlier) {
+  for (Solve& one : earlier) {
     if (one.plate) past_counts_ = past_counts_ + one.plate->counts();
     one.plate.reset();
   }
-  std::size_t place = 0;
-  for (const TrianglePatch& patch : plan_.surface->patches) {
-    if (!patch.moves()) continue;
-    std::unique_ptr<TrianglePlate>& plate = solves_[place++].plate;
-    if (plate) continue;
-    plate = std::make_unique<TrianglePlate>(
-        patch.cells, patch.masses, solver_, context_,
-        factors_of(*surface_, plan_.surface->level_set, patch, factors_.get()));
+  for (std::size_t k = 0; k < solves_.size(); ++k) {
+    const TrianglePatch& patch = selection.patches[k];
+    Solve& one = solves_[k];
+    one.patch = &patch;
+    one.region = static_cast<int>(k);
+    one.moves = patch.moves();
+    one.is_held = patch.is_held();
+    one.settling_length = settling_length_;
+    if (one.moves && !one.plate) {
+      one.plate = std::make_unique<TrianglePlate>(
+          patch.cells, patch.masses, solver_, context_,
+          factors_of(*surface_, selection.level_set, patch, factors_.get()));
+    }
+    find_rows(one);
   }
 }
 
-// Those of a patch: with a damping ratio, its slowest vibration decides.
-Result<Dynamics> TriangleBody::dynamics_of(const BodyInputs& inputs, const TrianglePatch& patch,
-                                           PatchSolve& one) const {
-  if (!inputs.asks_for_vibrations()) return inputs.dynamics;
-  const StageTimer timer(context_.profile, Stage::SetUp);
+void TriangleBody::find_rows(Solve& one) const {
+  one.moved.clear();
+  for (int k = 0; k < one.patch->free_nodes; ++k)
+    add_row(one.moved, plan_.surface->level_set.nodes[one.patch->points[k]], k);
+  one.nodes = one.moved;
+  one.rows = one.patch->free_nodes;
+  one.plastic.clear();
+  if (!settings_.yields || !one.plate) return;
+  const std::vector<int>& triangles = one.plate->triangles();
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    add_row(one.plastic, triangles[k], static_cast<int>(k));
+  one.plastic_rows = static_cast<Eigen::Index>(triangles.size());
+}
+
+int TriangleBody::first_node(std::size_t k) const {
+  return plan_.surface->level_set.nodes[solves_[k].patch->points[0]];
+}
+
+std::string TriangleBody::not_held(std::size_t k) const {
+  return "nothing holds the patch with node " + std::to_string(first_node(k)) +
+         ", which is static: give it a density or a damping";
+}
+
+void TriangleBody::take_material(const BodyInputs& inputs, std::size_t k) {
+  solves_[k].problem.bending = bending_of(inputs, surface_->unit, settings_.border);
+}
+
+Result<double> TriangleBody::smallest_eigenvalue_of(std::size_t k) {
+  Solve& one = solves_[k];
   if (!one.lambda || one.bending != one.problem.bending) {
-    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, patch.is_held());
-    if (!lambda) return fail(lambda.error());
+    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, one.is_held);
+    if (!lambda) return lambda;
     one.lambda = *lambda;
     one.bending = one.problem.bending;
   }
-  return damped_by_ratio(inputs.dynamics, *inputs.damping_ratio, *one.lambda);
+  return *one.lambda;
 }
 
-Result<void> TriangleBody::solve(const BodyInputs& inputs) {
-  const TriangleSelection& selection = *plan_.surface;
-  const auto slopes_of = [&](const EdgeTangents& tangents) -> std::array<Vector3d, 4> {
-    return {tangents.su0 / surface_->unit[0], tangents.su1 / surface_->unit[0],
-            tangents.sv0 / surface_->unit[1], tangents.sv1 / surface_->unit[1]};
-  };
-  std::size_t place = 0;
-  for (std::size_t k = 0; k < selection.patches.size(); ++k) {
-    const TrianglePatch& patch = selection.patches[k];
-    if (!patch.moves()) continue;
-    PatchSolve& one = solves_[place++];
-    one.problem.bending = bending_of(inputs, surface_->unit, settings_.border);
-    const auto dynamics = dynamics_of(inputs, patch, one);
-    if (!dynamics) return fail(dynamics.error());
-    if (!patch.is_held() && !resists_motion(*dynamics, plan_.steps.solved_length())) {
-      return fail(ErrorCode::SolverFailed,
-                  "nothing holds the patch with node " +
-                      std::to_string(selection.level_set.nodes[patch.points[0]]) +
-                      ", which is static: give it a density or a damping");
-    }
-    one.problem.dynamics = *dynamics;
-    one.problem.law = inputs.law;
-    one.problem.slopes = slopes_of(inputs.tangents);
-    one.problem.load = vectors_to_object(inputs.transform, selection.loads[k]);
-    if (remembers_push()) {
-      begin_load(patch, one.problem);
-      one.problem.first_slopes = slopes_of(first_tangents(inputs.tangents));
-    }
-    one.state = state_of(patch);
-    if (settings_.yields) {
-      const std::vector<int>& triangles = one.plate->triangles();
-      one.state.plastic.resize(static_cast<Eigen::Index>(triangles.size()), 9);
-      for (std::size_t n = 0; n < triangles.size(); ++n)
-        one.state.plastic.row(static_cast<Eigen::Index>(n)) = state_.plastic.row(triangles[n]);
-    }
-    auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
-    if (!next) {
-      Error error = next.error();
-      const int node = selection.level_set.nodes[patch.points[0]];
-      if (error.code == ErrorCode::SolverFailed) {
-        error.message += ", on the patch with node " + std::to_string(node);
-      }
-      return fail(std::move(error));
-    }
+EdgeTangents TriangleBody::tangents_of(const EdgeTangents& tangents, std::size_t) const {
+  return {tangents.su0 / surface_->unit[0], tangents.su1 / surface_->unit[0],
+          tangents.sv0 / surface_->unit[1], tangents.sv1 / surface_->unit[1]};
+}
+
+void TriangleBody::find_load(const BodyInputs& inputs, std::size_t k) {
+  solves_[k].problem.load = vectors_to_object(inputs.transform, plan_.surface->loads[k]);
+}
+
+Result<void> TriangleBody::advance(std::size_t k) {
+  Solve& one = solves_[k];
+  auto next = one.plate->advance(one.problem, plan_.steps, std::move(one.state));
+  if (next) {
     one.state = *std::move(next);
+    return {};
   }
-  return {};
+  Error error = next.error();
+  if (error.code == ErrorCode::SolverFailed)
+    error.message += ", on the patch with node " + std::to_string(first_node(k));
+  return fail(std::move(error));
 }
 
-// The load that a patch begins with: that of the last solve, at nodes which it moved.
-void TriangleBody::begin_load(const TrianglePatch& patch, TriangleProblem& problem) const {
-  problem.first_load = problem.load;
-  for (int k = 0; k < patch.free_nodes; ++k) {
-    const int node = plan_.surface->level_set.nodes[patch.points[k]];
-    if (state_.last.unknowns[static_cast<std::size_t>(node)])
-      problem.first_load.row(k) = state_.last.loads.row(node);
-  }
-}
-
-// Displacement and velocity of a patch's points.
-TriangleState TriangleBody::state_of(const TrianglePatch& patch) const {
+// That of the patch's points.
+void TriangleBody::find_displacement(std::size_t k) {
+  Solve& one = solves_[k];
+  const TrianglePatch& patch = *one.patch;
+  const Field& positions = first_positions();
   const LevelSet& level_set = plan_.surface->level_set;
-  const auto at_node = [&](int k) -> Eigen::RowVector3d {
-    const int node = level_set.nodes[k];
-    return next_positions_.row(node) - rest_.row(node);
+  const auto at_node = [&](int number) -> Eigen::RowVector3d {
+    const int node = level_set.nodes[number];
+    return positions.row(node) - rest_.row(node);
   };
   // The mean over those corners of a face that are not inside.
   const auto at_centre = [&](int face) -> Eigen::RowVector3d {
@@ -381,71 +349,19 @@ TriangleState TriangleBody::state_of(const TrianglePatch& patch) const {
     }
     return count > 0 ? Eigen::RowVector3d(sum / count) : sum;
   };
-  TriangleState state{Field::Zero(patch.cells.point_count, 3), Field(patch.free_nodes, 3)};
-  for (std::size_t k = 0; k < patch.points.size(); ++k) {
-    auto row = state.displacement.row(static_cast<Eigen::Index>(k));
-    if (patch.points[k] >= 0) {
-      row = at_node(patch.points[k]);
+  one.state.displacement.setZero(patch.cells.point_count, 3);
+  for (std::size_t n = 0; n < patch.points.size(); ++n) {
+    auto row = one.state.displacement.row(static_cast<Eigen::Index>(n));
+    if (patch.points[n] >= 0) {
+      row = at_node(patch.points[n]);
       continue;
     }
-    const CutPoint& point = patch.cut_points[-1 - patch.points[k]];
+    const CutPoint& point = patch.cut_points[-1 - patch.points[n]];
     if (point.kind == CutPoint::Kind::Rim) {
       row = point.of[1] >= 0 ? at_node(point.of[1]) : at_centre(-1 - point.of[1]);
     } else if (point.kind == CutPoint::Kind::Centre &&
-               static_cast<int>(k) >= patch.cells.free_points) {
+               static_cast<int>(n) >= patch.cells.free_points) {
       row = at_centre(point.face);
-    }
-  }
-  for (int k = 0; k < patch.free_nodes; ++k) {
-    state.velocity.row(k) = state_.velocities.row(level_set.nodes[patch.points[k]]);
-  }
-  return state;
-}
-
-// Makes the solution the state, all of it or nothing.
-Result<void> TriangleBody::take() {
-  const std::vector<int>& nodes = plan_.surface->level_set.nodes;
-  next_plastic_ = state_.plastic;
-  std::size_t place = 0;
-  for (const TrianglePatch& patch : plan_.surface->patches) {
-    if (!patch.moves()) continue;
-    const PatchSolve& one = solves_[place++];
-    const TriangleState& state = one.state;
-    for (Eigen::Index n = 0; n < state.plastic.rows(); ++n)
-      next_plastic_.row(one.plate->triangles()[static_cast<std::size_t>(n)]) = state.plastic.row(n);
-    for (int k = 0; k < patch.free_nodes; ++k) {
-      const int node = nodes[patch.points[k]];
-      next_positions_.row(node) = rest_.row(node) + state.displacement.row(k);
-      next_velocities_.row(node) = state.velocity.row(k);
-      if (!next_positions_.row(node).allFinite() || !next_velocities_.row(node).allFinite()) {
-        return fail(ErrorCode::NotFinite, "the state stopped being finite");
-      }
-      if (!remembers_push()) continue;
-      next_push_.loads.row(node) = one.problem.load.row(k);
-      next_push_.unknowns[static_cast<std::size_t>(node)] = 1;
-    }
-  }
-  if (!next_plastic_.allFinite())
-    return fail(ErrorCode::NotFinite, "the state stopped being finite");
-  if (recovers()) mark_unsettled();
-  state_.positions.swap(next_positions_);
-  state_.velocities.swap(next_velocities_);
-  state_.plastic.swap(next_plastic_);
-  if (remembers_push()) std::swap(state_.last, next_push_);
-  return {};
-}
-
-// Requires: the next positions are complete, but not yet in the state.
-void TriangleBody::mark_unsettled() {
-  std::fill(state_.unsettled.begin(), state_.unsettled.end(), std::uint8_t{0});
-  // Those of a patch that nothing holds too: they stay away from rest, and come back once it moves.
-  for (const TrianglePatch& patch : plan_.surface->patches) {
-    for (int k = 0; k < patch.free_nodes; ++k) {
-      const int node = plan_.surface->level_set.nodes[patch.points[k]];
-      const auto position = next_positions_.row(node);
-      const double larger = std::max(length_of(position - rest_.row(node)),
-                                     length_of(position - state_.positions.row(node)));
-      state_.unsettled[static_cast<std::size_t>(node)] = larger > 0 && larger >= settling_length_;
     }
   }
 }

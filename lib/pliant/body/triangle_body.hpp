@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "pliant/body/body.hpp"
+#include "pliant/body/elastic_body.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/mesh/triangles/point_tree.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
@@ -28,7 +28,7 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
                                               const NodeFactors* factors);
 
 /// One elastic surface as triangles, of any mesh. docs/model.md, "Surfaces".
-class TriangleBody final : public Body {
+class TriangleBody final : public ElasticBody {
  public:
   /// Starts at rest. Requires: settings.reference is Rest. `solver` and `context` are those of its
   /// plates; the context's profile receives the times of its steps. `factors` null: the material is
@@ -45,8 +45,6 @@ class TriangleBody final : public Body {
                std::shared_ptr<const NodeFactors> factors);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
-  Result<void> step(const BodyInputs& inputs) override;
-  const StepPlan& last_step() const override { return plan_; }
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
     return plan.surface->forces[force].push;
   }
@@ -55,11 +53,12 @@ class TriangleBody final : public Body {
   const TriangleSurface& surface() const { return *surface_; }
 
  private:
-  // A patch while it is solved.
-  struct PatchSolve {
-    std::unique_ptr<TrianglePlate> plate;
+  struct Solve final : BodyPatch {
+    PlateInterval& interval() override { return problem; }
+
+    const TrianglePatch* patch = nullptr;
+    std::unique_ptr<TrianglePlate> plate;  // null: the patch does not move
     TriangleProblem problem;
-    TriangleState state;
     std::optional<double> lambda;  // of the plate's slowest vibration with `bending`, if known
     Bending bending;
   };
@@ -70,27 +69,30 @@ class TriangleBody final : public Body {
                        const BodyInputs& inputs, StepPlan& plan) const;
   Result<void> weigh(const TriangleSurface& surface, const PointTree& tree,
                      const BodyInputs& inputs, TriangleSelection& selection) const;
-  void keep_plates();
-  Result<void> solve(const BodyInputs& inputs);
-  Result<Dynamics> dynamics_of(const BodyInputs& inputs, const TrianglePatch& patch,
-                               PatchSolve& one) const;
-  TriangleState state_of(const TrianglePatch& patch) const;
-  void begin_load(const TrianglePatch& patch, TriangleProblem& problem) const;
-  Result<void> take();
-  void mark_unsettled();
+  void find_rows(Solve& one) const;
+  int first_node(std::size_t k) const;
+
+  Result<void> select(const BodyInputs& inputs, StepPlan& plan) override {
+    return this->plan(inputs, plan);
+  }
+  void keep_patches(const BodyInputs& inputs) override;
+  std::size_t patch_count() const override { return solves_.size(); }
+  BodyPatch& patch(std::size_t k) override { return solves_[k]; }
+  std::string not_held(std::size_t k) const override;
+  void take_material(const BodyInputs& inputs, std::size_t k) override;
+  Result<double> smallest_eigenvalue_of(std::size_t k) override;
+  EdgeTangents tangents_of(const EdgeTangents& tangents, std::size_t k) const override;
+  void find_load(const BodyInputs& inputs, std::size_t k) override;
+  void find_displacement(std::size_t k) override;
+  Result<void> advance(std::size_t k) override;
 
   std::shared_ptr<const TriangleSurface> surface_;
   PointTree tree_;               // of the surface's nodes
   std::vector<bool> is_border_;  // of nodes
   double settling_length_;       // with `Release::Recover` [length]
   SolverChoice solver_;
-  RunContext context_;
-  StepPlan plan_;
-  std::vector<PatchSolve> solves_;  // of the patches that move, in their order
-  SolverCounts past_counts_;        // of the plates that are gone
-  Field next_positions_, next_velocities_;
-  LastPush next_push_;         // only if the body remembers it
-  PlasticField next_plastic_;  // only if it yields
+  std::vector<Solve> solves_;  // of the patches, in their order
+  SolverCounts past_counts_;   // of the plates that are gone
 };
 
 }  // namespace pliant

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "pliant/core/field.hpp"
 
 namespace pliant {
@@ -62,11 +64,30 @@ struct PlasticLaw {
   friend bool operator==(const PlasticLaw&, const PlasticLaw&) = default;
 };
 
-/// Displacement and velocity on all nodes of the outline's grid, rim included.
+/// Displacement and velocity of a plate. On a grid: of all nodes of its outline's grid, rim
+/// included, row = grid.node(i, j). On triangles: displacement of all points, velocity of those
+/// with a mass.
 struct PlateState {
-  Field displacement;         ///< #nodes x 3, row = grid.node(i, j) [length]
-  Field velocity;             ///< #nodes x 3 [length/s]
-  PlasticField plastic = {};  ///< of a plate that yields: #nodes x 9 [length/uv^2]
+  Field displacement;  ///< #nodes or #points x 3 [length]
+  Field velocity;      ///< #nodes or #masses x 3 [length/s]
+  /// Of a plate that yields: #nodes x 9 [length/uv^2], or #triangles x 9, those of H [1/length].
+  PlasticField plastic = {};
+};
+
+/// What moves a plate over one interval: all that stays the same while its steps run, but for the
+/// plate itself. SPEC 4.
+struct PlateInterval {
+  Dynamics dynamics;
+  EdgeTangents tangents;  ///< on triangles, along -u, +u, -v and +v [1]
+  /// #nodes x 3, rim rows are not read [length/uv^4]; on triangles #masses x 3, integrated over the
+  /// plate [length b length^2/uv^4]
+  Field load;
+
+  std::optional<PlasticLaw> law = {};  ///< of a plate that yields; nullopt: it is elastic
+
+  /// What load and tangents change from, evenly over the interval; only for `Integrator::Exact`.
+  Field first_load = {};
+  EdgeTangents first_tangents = {};
 };
 
 }  // namespace pliant

@@ -55,26 +55,27 @@ struct PlateSystem {
   friend bool operator==(const PlateSystem& one, const PlateSystem& other);
 };
 
-/// One plate over one interval: everything that stays the same while its steps run. SPEC 4.
-struct PlateProblem {
+/// One plate of a grid over one interval.
+struct PlateProblem : PlateInterval {
+  PlateProblem() = default;
+  PlateProblem(Outline of, const Stiffness& stiff, const Dynamics& moving,
+               const EdgeTangents& slopes = {}, Field loads = {}, double ratio = 0,
+               std::shared_ptr<const NodeFactors> uneven = {})
+      : PlateInterval{moving, slopes, std::move(loads)},
+        outline(std::move(of)),
+        stiffness(stiff),
+        poisson(ratio),
+        factors(std::move(uneven)) {}
+
   Outline outline;  ///< of at least 3 x 3 nodes
   Stiffness stiffness;
-  Dynamics dynamics;
-  EdgeTangents tangents;
-  Field load;  ///< #nodes x 3; rim rows are not read [length/uv^4]
 
   double poisson = 0;                               ///< as in `PlateSystem`
   std::shared_ptr<const NodeFactors> factors = {};  ///< as there
 
-  std::optional<PlasticLaw> law = {};  ///< of a plate that yields; nullopt: it is elastic
-
   /// Asked after each step with the displacement of all nodes (#nodes x 3); false: the steps that
   /// follow are not needed, and the result is not either. Null: nobody asks.
   const std::function<bool(const Field& displacement)>* watch = nullptr;
-
-  /// What load and tangents change from, evenly over the interval; only for `Integrator::Exact`.
-  Field first_load = {};
-  EdgeTangents first_tangents = {};
 
   bool is_even() const { return system(1).is_even(); }
 

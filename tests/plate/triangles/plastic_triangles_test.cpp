@@ -79,8 +79,8 @@ TriangleProblem problem_of(const TrianglePatch& patch, double hardening) {
   TriangleProblem problem;
   problem.bending = bending_of({1.5, 2.5, 2}, {1, 1}, 0.25);
   problem.dynamics = {0.002, 0.01};
-  problem.slopes = {Vector3d(0.02, -0.1, 0.05), Vector3d(-0.03, 0.05, 0), Vector3d(0, 0.06, 0),
-                    Vector3d(0.01, 0.02, -0.04)};
+  problem.tangents = {Vector3d(0.02, -0.1, 0.05), Vector3d(-0.03, 0.05, 0), Vector3d(0, 0.06, 0),
+                      Vector3d(0.01, 0.02, -0.04)};
   const Eigen::Map<const Eigen::VectorXd> masses(patch.masses.data(),
                                                  static_cast<Eigen::Index>(patch.masses.size()));
   Field even = 20 * Field::Random(masses.size(), 3);
@@ -90,7 +90,7 @@ TriangleProblem problem_of(const TrianglePatch& patch, double hardening) {
   return problem;
 }
 
-TriangleState at_rest(const TriangleCells& cells, Eigen::Index masses) {
+PlateState at_rest(const TriangleCells& cells, Eigen::Index masses) {
   Field displacement = Field::Zero(cells.point_count, 3);
   for (int k = cells.free_points; k < cells.point_count; ++k)
     displacement.row(k) << 0.001 * (k % 3), -0.001 * (k % 2), 0.0005 * (k % 5);
@@ -150,7 +150,7 @@ class DenseTriangles {
   }
 
   // One step of backward Euler, all of displacement, velocity and plastic curvatures.
-  void step(TriangleState& state) const {
+  void step(PlateState& state) const {
     const auto points = static_cast<Eigen::Index>(plate_.masses().size());
     const Eigen::Map<const Eigen::VectorXd> masses(plate_.masses().data(), points);
     const double shift = problem_.dynamics.shift(dt_), inertia = problem_.dynamics.inertia(dt_);
@@ -174,8 +174,8 @@ class DenseTriangles {
   }
 
   // One step of Newmark's, twice as long.
-  void reflect(TriangleState& state) const {
-    TriangleState next = state;
+  void reflect(PlateState& state) const {
+    PlateState next = state;
     step(next);
     const auto points = static_cast<Eigen::Index>(plate_.masses().size());
     state.displacement.topRows(points) =
@@ -185,7 +185,7 @@ class DenseTriangles {
   }
 
   // Of a plate at rest on its rim, without slopes: the least over all that has no mass.
-  double energy(const TriangleState& state) const {
+  double energy(const PlateState& state) const {
     const auto points = static_cast<Eigen::Index>(plate_.masses().size());
     const auto others = stiffness_.rows() - points;
     const Eigen::Map<const Eigen::VectorXd> masses(plate_.masses().data(), points);
@@ -255,9 +255,9 @@ class DenseTriangles {
       for (int m = 0; m < slope.count; ++m)
         by.col(cells.free_points + slope.first + m) += slope.sign * tensor;
       if (slope.count == 0) {
-        const auto& s = problem_.slopes;
-        const Vector3d given = n[0] * n[0] * (n[0] > 0 ? s[1] : Vector3d(-s[0])) +
-                               n[1] * n[1] * (n[1] > 0 ? s[3] : Vector3d(-s[2]));
+        const auto& s = problem_.tangents;
+        const Vector3d given = n[0] * n[0] * (n[0] > 0 ? s.su1 : Vector3d(-s.su0)) +
+                               n[1] * n[1] * (n[1] > 0 ? s.sv1 : Vector3d(-s.sv0));
         held += tensor * given.transpose();
       }
       for (int corner = 0; corner < 3; ++corner) {
@@ -327,7 +327,7 @@ TEST_CASE("triangles that yield move as the dense fixed point", "[plate][plastic
           CAPTURE(one.name, hardening, is_uneven, static_cast<int>(integrator));
           TriangleProblem problem = problem_of(one.patch, hardening);
           TrianglePlate plate = plate_of(one.patch, is_uneven ? uneven(one.patch.cells) : nullptr);
-          TriangleState state = at_rest(one.patch.cells, problem.load.rows()), expected = state;
+          PlateState state = at_rest(one.patch.cells, problem.load.rows()), expected = state;
           DenseTriangles dense(plate, problem);
           const TimeSteps steps{2, 0.01, integrator};
           dense.assemble(state.displacement, steps.solved_length());
@@ -361,7 +361,7 @@ TEST_CASE("triangles that yield nowhere have the elastic bits", "[plate][plastic
       TriangleProblem problem = problem_of(one.patch, 0.1);
       problem.law->yield = 1e6;
       const TimeSteps steps{4, 0.01, integrator};
-      const TriangleState start = at_rest(one.patch.cells, problem.load.rows());
+      const PlateState start = at_rest(one.patch.cells, problem.load.rows());
       const auto plastic = plate_of(one.patch).advance(problem, steps, start);
       problem.law.reset();
       const auto elastic = plate_of(one.patch).advance(problem, steps, start);
@@ -381,9 +381,9 @@ TEST_CASE("energy never grows while triangles flow", "[plate][plastic][morley]")
       CAPTURE(one.name, static_cast<int>(integrator));
       TriangleProblem problem = problem_of(one.patch, 0.1);
       problem.dynamics.damping = 0;
-      for (Vector3d& slope : problem.slopes) slope.setZero();
+      problem.tangents = {};
       TrianglePlate plate = plate_of(one.patch);
-      TriangleState state = at_rest(one.patch.cells, problem.load.rows());
+      PlateState state = at_rest(one.patch.cells, problem.load.rows());
       state.displacement.setZero();
       state = *plate.advance(problem, {3, 0.01}, state);
       problem.load.setZero();
@@ -410,7 +410,7 @@ TEST_CASE("what steps of triangles learn ends with their frame", "[plate][plasti
     CAPTURE(one.name);
     TriangleProblem problem = problem_of(one.patch, 0.1);
     TrianglePlate plate = plate_of(one.patch);
-    TriangleState state = at_rest(one.patch.cells, problem.load.rows()), other = state;
+    PlateState state = at_rest(one.patch.cells, problem.load.rows()), other = state;
     for (int frame = 0; frame < 3; ++frame) {
       state = *plate.advance(problem, {3, 0.01}, state);
       other = *plate_of(one.patch).advance(problem, {3, 0.01}, other);
@@ -430,13 +430,16 @@ TEST_CASE("triangles flow alike in all directions", "[plate][plastic][morley]") 
   REQUIRE((turn * turn.transpose()).isIdentity(1e-12));
   TriangleProblem problem = problem_of(patch, 0.1), turned = problem;
   turned.load = problem.load * turn.transpose();
-  for (int k = 0; k < 4; ++k) turned.slopes[k] = turn * problem.slopes[k];
-  const TriangleState start = at_rest(patch.cells, problem.load.rows());
-  TriangleState turned_start = start;
+  for (const auto side :
+       {&EdgeTangents::su0, &EdgeTangents::su1, &EdgeTangents::sv0, &EdgeTangents::sv1}) {
+    turned.tangents.*side = turn * problem.tangents.*side;
+  }
+  const PlateState start = at_rest(patch.cells, problem.load.rows());
+  PlateState turned_start = start;
   turned_start.displacement = start.displacement * turn.transpose();
   TrianglePlate plate = plate_of(patch);
-  const TriangleState state = *plate.advance(problem, {3, 0.01}, start);
-  const TriangleState other = *plate.advance(turned, {3, 0.01}, turned_start);
+  const PlateState state = *plate.advance(problem, {3, 0.01}, start);
+  const PlateState other = *plate.advance(turned, {3, 0.01}, turned_start);
   CHECK(largest(state.plastic) > 0.01);
   CHECK(largest(other.displacement - state.displacement * turn.transpose()) <
         1e-9 * largest(state.displacement));
@@ -477,7 +480,7 @@ TEST_CASE("triangles and a grid come to one dent", "[plate][plastic][morley]") {
     problem.bending = bending_of(stiffness, {1, 1});
     problem.dynamics = {0, 0};
     problem.law = law;
-    TriangleState state = at_rest(patch.cells, static_cast<Eigen::Index>(patch.masses.size()));
+    PlateState state = at_rest(patch.cells, static_cast<Eigen::Index>(patch.masses.size()));
     state.displacement.setZero();
     std::vector<double> heights;
     for (const double q : {2.0, 0.0}) {

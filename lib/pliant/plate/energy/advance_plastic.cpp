@@ -151,10 +151,9 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
                                    const TimeSteps& steps, PlateState state) {
   PLIANT_EXPECTS(problem.law && state.plastic.rows() == problem.load.rows());
   clear_rim(problem.outline, state.velocity);
-  const EdgeTangents& t = problem.tangents;
-  const PlasticPlate plate(
-      problem, components_at_work({t.su0, t.su1, t.sv0, t.sv1}, problem.load, state.displacement,
-                                  state.velocity, state.plastic));
+  const PlasticPlate plate(problem,
+                           components_at_work(problem.tangents, problem.load, state.displacement,
+                                              state.velocity, state.plastic));
   // A plate that goes on as it moves and yields then is not tried elastically.
   const Field next = state.displacement + steps.solved_length() * state.velocity;
   if (plate.yields(next, state.plastic)) {

@@ -311,7 +311,7 @@ class EquilibriumSteps final : public PlasticSteps {
 
 }  // namespace
 
-std::vector<int> components_at_work(const std::array<Vector3d, 4>& slopes, const Field& load,
+std::vector<int> components_at_work(const EdgeTangents& tangents, const Field& load,
                                     const Field& displacement, const Field& velocity,
                                     const PlasticField& plastic) {
   std::vector<int> components;
@@ -319,7 +319,7 @@ std::vector<int> components_at_work(const std::array<Vector3d, 4>& slopes, const
     const bool is_still =
         load.col(k).isZero(0) && displacement.col(k).isZero(0) && velocity.col(k).isZero(0) &&
         plastic.col(k).isZero(0) && plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0) &&
-        std::ranges::all_of(slopes, [&](const Vector3d& slope) { return slope[k] == 0; });
+        tangents.su0[k] == 0 && tangents.su1[k] == 0 && tangents.sv0[k] == 0 && tangents.sv1[k] == 0;
     if (!is_still) components.push_back(k);
   }
   return components;

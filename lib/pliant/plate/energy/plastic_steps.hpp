@@ -69,7 +69,7 @@ class PlasticSteps {
 /// The components of a plate that do not stay 0: all but those in which all of these are 0, on what
 /// is held too. Where the forces of what is held cancel on the unknowns, its curvatures do not, and
 /// flow belongs to all components of a place together.
-std::vector<int> components_at_work(const std::array<Vector3d, 4>& slopes, const Field& load,
+std::vector<int> components_at_work(const EdgeTangents& tangents, const Field& load,
                                     const Field& displacement, const Field& velocity,
                                     const PlasticField& plastic);
 

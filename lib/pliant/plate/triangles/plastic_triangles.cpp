@@ -16,7 +16,7 @@ std::vector<int> triangles_of(const TriangleCells& cells) {
 }
 
 PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& cell,
-                                const MorleyCell& shape, const GivenSlopes& slopes,
+                                const MorleyCell& shape, const EdgeTangents& slopes,
                                 const Field& displacement) {
   const std::array<Curvature, 6> by_value = shape.by_value();
   PlaceCurvatures h = {};
@@ -24,8 +24,8 @@ PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& 
     const auto add = [&](int value, double amount) {
       for (int n = 0; n < 3; ++n) h[3 * n + component] += amount * by_value[value][n];
     };
-    std::array<double, 4> given;
-    for (int k = 0; k < 4; ++k) given[k] = slopes[k][component];
+    const std::array<double, 4> given = {slopes.su0[component], slopes.su1[component],
+                                         slopes.sv0[component], slopes.sv1[component]};
     for (int k = 0; k < 3; ++k) {
       if (cell.points[k] >= cells.free_points) add(k, displacement(cell.points[k], component));
       if (cell.slopes[k].count == 0) add(3 + k, shape.given_slope(k, given));
@@ -87,7 +87,7 @@ void PlasticTriangles::set_law(const PlasticLaw& law, const CellFactors* factors
   }
 }
 
-void PlasticTriangles::hold(const TriangleCells& cells, const GivenSlopes& slopes,
+void PlasticTriangles::hold(const TriangleCells& cells, const EdgeTangents& slopes,
                             const Field& displacement) {
   held_.setZero(count(), 9);
   for (int triangle = 0; triangle < count(); ++triangle) {

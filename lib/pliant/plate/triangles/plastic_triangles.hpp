@@ -16,12 +16,9 @@ namespace pliant {
 /// curvatures and of `CellFactors::yield` and `hardening`, row k is that of triangle k here.
 std::vector<int> triangles_of(const TriangleCells& cells);
 
-/// Slopes prescribed along -u, +u, -v and +v. [1]
-using GivenSlopes = std::array<Vector3d, 4>;
-
 /// The curvatures of a cell by what is held: its displacements, and the slopes that are given.
 PlaceCurvatures held_curvatures(const TriangleCells& cells, const TriangleCell& cell,
-                                const MorleyCell& shape, const GivenSlopes& slopes,
+                                const MorleyCell& shape, const EdgeTangents& slopes,
                                 const Field& displacement);
 
 /// The curvatures of a plate's triangles, and how they flow. That of a triangle is the mean over
@@ -36,7 +33,7 @@ class PlasticTriangles {
   void set_law(const PlasticLaw& law, const CellFactors* factors);
 
   /// What is held until the next call. `displacement` is #points x 3.
-  void hold(const TriangleCells& cells, const GivenSlopes& slopes, const Field& displacement);
+  void hold(const TriangleCells& cells, const EdgeTangents& slopes, const Field& displacement);
 
   /// As those of `PlasticPlate`. Displacements (with slopes) and forces are on all unknowns.
   std::vector<int> triangles_over(double part, const Field& x, const PlasticField& from) const;

@@ -131,7 +131,7 @@ Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
 }
 
 // The forces on the unknowns by what is held: -K times the displacements and slopes that are given.
-Field TrianglePlate::held_forces(const GivenSlopes& slopes, const Field& displacement) const {
+Field TrianglePlate::held_forces(const EdgeTangents& slopes, const Field& displacement) const {
   Field forces = Field::Zero(cells_.unknown_count(), 3);
   for (int number = 0; number < static_cast<int>(cells_.cells.size()); ++number) {
     const TriangleCell& each = cells_.cells[number];
@@ -167,8 +167,8 @@ Result<Field> TrianglePlate::solve(const Field& forces) {
   return Field(solution->topRows(points));
 }
 
-Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, const TimeSteps& steps,
-                                             TriangleState state) {
+Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const TimeSteps& steps,
+                                             PlateState state) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(state.displacement.rows() == cells_.point_count &&
                  state.velocity.rows() == points && problem.load.rows() == points);
@@ -184,16 +184,16 @@ Result<TriangleState> TrianglePlate::advance(const TriangleProblem& problem, con
   if (problem.law) {
     if (auto done = advance_plastic(problem, steps, state, motion); !done) return fail(done.error());
   } else {
-    const auto forces_by = [&](const GivenSlopes& slopes, const Field& load) {
+    const auto forces_by = [&](const EdgeTangents& slopes, const Field& load) {
       auto sum = reduced(held_forces(slopes, state.displacement));
       if (sum) sum->topRows(points) += load;
       return sum;
     };
-    auto last = forces_by(problem.slopes, problem.load);
+    auto last = forces_by(problem.tangents, problem.load);
     if (!last) return fail(last.error());
     ForceChange forces{{}, *std::move(last)};
     if (steps.are_exact()) {
-      auto first = forces_by(problem.first_slopes, problem.first_load);
+      auto first = forces_by(problem.first_tangents, problem.first_load);
       if (!first) return fail(first.error());
       forces.first = *std::move(first);
     }
@@ -256,16 +256,16 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
 
 // The steps are elastic until one yields.
 Result<void> TrianglePlate::advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
-                                            TriangleState& state, Motion& motion) {
+                                            PlateState& state, Motion& motion) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(state.plastic.rows() == static_cast<Eigen::Index>(triangles_.size()));
   InnerUnknowns& inner = plasticity_->inner;
   PlasticTriangles& triangles = plasticity_->triangles;
-  std::vector<int> components = components_at_work(problem.slopes, problem.load, state.displacement,
+  std::vector<int> components = components_at_work(problem.tangents, problem.load, state.displacement,
                                                    motion.velocity, state.plastic);
   triangles.set_law(*problem.law, factors_.get());
-  triangles.hold(cells_, problem.slopes, state.displacement);
-  Field known = held_forces(problem.slopes, state.displacement);
+  triangles.hold(cells_, problem.tangents, state.displacement);
+  Field known = held_forces(problem.tangents, state.displacement);
   Field forces = known;
   if (!state.plastic.isZero(0)) triangles.add_forces(state.plastic, forces);
   auto of_matrix = reduced(forces);

@@ -20,28 +20,10 @@
 
 namespace pliant {
 
-/// Everything that stays the same while the steps of an interval run.
-struct TriangleProblem {
+/// One plate of triangles over one interval. The norm of (8h) has `bending` for its form, so that
+/// the law's yield has the unit that it has on a grid [length/uv^2].
+struct TriangleProblem : PlateInterval {
   Bending bending;
-  Dynamics dynamics;
-  GivenSlopes slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  Field load;  ///< #masses x 3: integrated over the plate [length b length^2/uv^4]
-
-  /// What load and slopes change from, evenly over the interval; only for `Integrator::Exact`.
-  Field first_load = {};
-  GivenSlopes first_slopes = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(),
-                              Vector3d::Zero()};
-
-  /// Of a plate that yields; nullopt: it is elastic. The norm of (8h) has `bending` for its form,
-  /// so that `yield` has the unit that it has on a grid [length/uv^2].
-  std::optional<PlasticLaw> law = {};
-};
-
-/// Displacement of all points, and velocity of those with a mass.
-struct TriangleState {
-  Field displacement;         ///< #points x 3 [length]
-  Field velocity;             ///< #masses x 3 [length/s]
-  PlasticField plastic = {};  ///< of a plate that yields: #triangles x 9, those of H [1/length]
 };
 
 /// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
@@ -65,8 +47,8 @@ class TrianglePlate : private PlateAssembly {
   /// Advances as `advance_in_steps`, or exactly; with a law as `advance_plastic`, which is not for
   /// exact steps. What is held keeps its displacement. Errors: those of `prepare`; SolverFailed if
   /// a step does not settle; Interrupted.
-  Result<TriangleState> advance(const TriangleProblem& problem, const TimeSteps& steps,
-                                TriangleState state);
+  Result<PlateState> advance(const TriangleProblem& problem, const TimeSteps& steps,
+                                PlateState state);
 
   /// K: the upper triangle of what is factored, without unknowns that belong to one block of cells.
   /// Errors: OutOfMemory; Interrupted.
@@ -75,7 +57,7 @@ class TrianglePlate : private PlateAssembly {
   const TriangleCells& cells() const { return cells_; }
 
   /// The triangles of the surface that the plate has a part of, ascending: those of the rows of
-  /// `TriangleState::plastic`, and of the factors of yield and hardening.
+  /// `PlateState::plastic`, and of the factors of yield and hardening.
   const std::vector<int>& triangles() const { return triangles_; }
 
   const std::vector<double>& masses() const { return masses_; }
@@ -101,10 +83,10 @@ class TrianglePlate : private PlateAssembly {
 
   Result<void> bend(const Bending& bending);
   Result<Field> reduced(const Field& forces) const;
-  Field held_forces(const GivenSlopes& slopes, const Field& displacement) const;
+  Field held_forces(const EdgeTangents& slopes, const Field& displacement) const;
   Result<void> prepare_plasticity();
   Result<void> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
-                               TriangleState& state, Motion& motion);
+                               PlateState& state, Motion& motion);
 
   int size() const override { return reduced_.count; }
   PlateWeights weights() const override;
