@@ -1,8 +1,10 @@
 #include "pliant/plate/sparse/supernodal_factor.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <complex>
 #include <iterator>
 #include <limits>
 #include <random>
@@ -192,6 +194,70 @@ TEST_CASE("supernodes solve what a slow factor solves, with the same bits for ev
       CHECK(found == first);
     }
   }
+}
+
+TEST_CASE("a complex factor solves what a full matrix solves, with the same bits for every width",
+          "[plate][factor][exact]") {
+  using Number = std::complex<double>;
+  for (const auto& [name, matrix] : matrices()) {
+    CAPTURE(name);
+    const auto size = matrix.rows();
+    const auto pattern = std::make_shared<const SupernodePattern>(matrix);
+    Eigen::MatrixXcd full =
+        SparseMatrix(matrix.selfadjointView<Eigen::Upper>()).toDense().cast<Number>();
+    // Of half the rows, as far from the positive numbers as they may be, and farther.
+    std::vector<Complex> shifts;
+    for (Eigen::Index row = 0; row < (size + 1) / 2; ++row) {
+      const double share = static_cast<double>(row + 1) / static_cast<double>(size);
+      shifts.push_back({0.5 - 2 * share, 3 * share});
+      full(row, row) += Number(shifts.back().re, shifts.back().im);
+    }
+    const Eigen::MatrixXcd forces = Eigen::MatrixXcd::Random(size, 3);
+    const Eigen::MatrixXcd expected = full.fullPivLu().solve(forces);
+    Eigen::MatrixXcd first;
+    for (int k = 0; const PlateKernels* kernels = runnable_kernels(k); ++k) {
+      const RunContext context{.most_lanes = kernels->lanes};
+      SupernodalNumbers<Complex> factor;
+      REQUIRE(factor.factorize(pattern, matrix.valuePtr(), shifts, context));
+      constexpr int line = SupernodalNumbers<Complex>::line;
+      const NumberBlock x(static_cast<std::size_t>(pattern->solve_size() * line));
+      std::fill_n(x.begin(), x.count(), 0.0);
+      const auto at = [&](int place, int c) { return x.begin() + place * line + c; };
+      for (int place = 0; place < size; ++place) {
+        for (int c = 0; c < 3; ++c) {
+          const Number force = forces(pattern->order()[place], c);
+          *at(place, c) = force.real();
+          *at(place, line / 2 + c) = force.imag();
+        }
+      }
+      factor.solve(context, x.begin());
+      Eigen::MatrixXcd found(size, 3);
+      for (int place = 0; place < size; ++place) {
+        for (int c = 0; c < 3; ++c)
+          found(pattern->order()[place], c) = Number(*at(place, c), *at(place, line / 2 + c));
+      }
+      const double error = name == "a plate" ? 1e-10 : 1e-12;
+      CHECK((found - expected).norm() <= error * expected.norm());
+      if (k == 0) first = found;
+      CHECK(found == first);
+    }
+  }
+}
+
+TEST_CASE("a complex factor without a pivot is refused", "[plate][factor][exact]") {
+  SparseMatrix matrix(2, 2);
+  const std::vector<Eigen::Triplet<double>> entries = {{0, 0, 0}, {0, 1, 0}, {1, 1, 1}};
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const auto pattern = std::make_shared<const SupernodePattern>(matrix);
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (const Complex shift : {Complex{}, Complex{none, 1}, Complex{1, none}, Complex{1e160, 0}}) {
+    SupernodalNumbers<Complex> factor;
+    const auto made = factor.factorize(pattern, matrix.valuePtr(), std::array{shift}, {});
+    REQUIRE_FALSE(made);
+    CHECK(made.error().code == ErrorCode::SolverFailed);
+  }
+  SupernodalNumbers<Complex> factor;
+  CHECK(factor.factorize(pattern, matrix.valuePtr(), std::array{Complex{0, 1}}, {}));
 }
 
 TEST_CASE("no bit of a factor depends on threads, nor do its errors", "[plate][factor][threads]") {

@@ -77,7 +77,7 @@ struct SparseMotion::PatternItem final : Shelf::Item {
   }
 
   std::vector<int> starts, rows;
-  FactorPattern pattern;
+  SupernodePattern pattern;
 };
 
 struct SparseMotion::FactorsItem final : Shelf::Item {
@@ -122,15 +122,14 @@ Result<void> SparseMotion::find_pattern(const SparseMatrix& matrix) {
                                key, [&](const PatternItem& one) { return one.is_of(matrix); })
                          : nullptr;
   if (found) {
-    pattern_ = std::shared_ptr<const FactorPattern>(found, &found->pattern);
+    pattern_ = std::shared_ptr<const SupernodePattern>(found, &found->pattern);
     return reserve(bytes + pattern_->memory());
   }
   auto made = std::make_shared<PatternItem>();
-  made->pattern = FactorPattern(matrix);
+  made->pattern = SupernodePattern(matrix);
   if (auto reserved = reserve(bytes + made->pattern.memory()); !reserved) return reserved;
-  made->pattern.store_entries();
   ++counts_.analyses;
-  pattern_ = std::shared_ptr<const FactorPattern>(made, &made->pattern);
+  pattern_ = std::shared_ptr<const SupernodePattern>(made, &made->pattern);
   if (!context_.shelf) return {};
   made->starts.assign(matrix.outerIndexPtr(), matrix.outerIndexPtr() + matrix.cols() + 1);
   made->rows.assign(matrix.innerIndexPtr(), matrix.innerIndexPtr() + matrix.nonZeros());
@@ -160,7 +159,7 @@ Result<std::shared_ptr<const SparseMotion::ComplexFactors>> SparseMotion::find_f
     made->matrix = matrix_;
     const SparseMatrix& stiffness = matrix_->stiffness;
     const std::size_t bytes =
-        count * ComplexFactor::memory(*pattern_) +
+        count * ComplexFactor::bytes(*pattern_) +
         static_cast<std::size_t>(stiffness.nonZeros()) * (sizeof(double) + sizeof(int)) +
         static_cast<std::size_t>(stiffness.cols()) * (2 * sizeof(double) + sizeof(int));
     context_.shelf->keep(key, std::move(made), bytes);
@@ -179,8 +178,10 @@ Result<SparseMotion::Factors*> SparseMotion::factors_for(double length) {
   const int size = pattern_->size();
   const std::size_t bytes =
       pattern_->memory() + static_cast<std::size_t>(size) * 600 +
-      (pole_count * (factors_.size() + 1) + 1) * ComplexFactor::memory(*pattern_) +
-      pole_count * (static_cast<std::size_t>(size) * ComplexFactor::row_numbers * sizeof(double));
+      (pole_count * (factors_.size() + 1) + 1) * ComplexFactor::bytes(*pattern_) +
+      pole_count *
+          (static_cast<std::size_t>(pattern_->solve_size()) * ComplexFactor::line * sizeof(double) +
+           ComplexFactor::work_bytes(*pattern_));
   if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
   const auto made = find_factors(length, pole_count, [&](ComplexFactors& factors) {
     std::array<Result<void>, pole_count> done;
@@ -191,8 +192,7 @@ Result<SparseMotion::Factors*> SparseMotion::factors_for(double length) {
       for (std::size_t k = 0; k < shifts.size(); ++k) {
         shifts[k] = (rate * matrix_->inertia[k] + Complex{matrix_->drag[k], 0}) * rate;
       }
-      done[pole] =
-          factors[pole].factorize(*pattern_, matrix_->stiffness, shifts, context_.should_stop);
+      done[pole] = factors[pole].factorize(pattern_, matrix_->stiffness.valuePtr(), shifts, alone_);
     });
     for (Result<void>& one : done) {
       if (!one) return std::move(one);
@@ -213,30 +213,29 @@ Result<void> SparseMotion::find_massless(const Field& force, Field& w) {
   const Eigen::VectorXd diagonal = matrix_->stiffness.diagonal();
   const double hold = 1e20 * diagonal.cwiseAbs().maxCoeff();
   if (!holding_) {
-    const std::size_t bytes = memory_.bytes() + ComplexFactor::memory(*pattern_);
+    const std::size_t bytes = memory_.bytes() + ComplexFactor::bytes(*pattern_);
     if (!memory_.try_resize(bytes)) return fail(factor_too_large(size, memory_.complaint(bytes)));
     auto made = find_factors(length_when_held, 1, [&](ComplexFactors& factors) {
       const std::vector<Complex> shifts(matrix_->inertia.size(), Complex{hold, 0});
-      return factors.front().factorize(*pattern_, matrix_->stiffness, shifts, context_.should_stop);
+      return factors.front().factorize(pattern_, matrix_->stiffness.valuePtr(), shifts, alone_);
     });
     if (!made) return fail(made.error());
     holding_ = *made;
   }
-  std::vector<double>& x = solutions_[0];
-  x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
+  double* const x = cleared(0);
   for (int place = 0; place < size; ++place) {
-    const int row = ComplexFactor::row_of(*pattern_, place);
+    const int row = pattern_->order()[place];
     for (int c = 0; c < 3; ++c) {
-      x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c] =
+      x[static_cast<std::size_t>(place) * ComplexFactor::line + c] =
           row < masses ? hold * w(row, c) : force(row, c);
     }
   }
-  holding_->front().solve(*pattern_, x.data());
+  holding_->front().solve(alone_, x);
   for (int place = 0; place < size; ++place) {
-    const int row = ComplexFactor::row_of(*pattern_, place);
+    const int row = pattern_->order()[place];
     if (row < masses) continue;
     for (int c = 0; c < 3; ++c)
-      w(row, c) = x[static_cast<std::size_t>(place) * ComplexFactor::row_numbers + c];
+      w(row, c) = x[static_cast<std::size_t>(place) * ComplexFactor::line + c];
   }
   counts_.solves += 2;
   return {};
@@ -263,6 +262,15 @@ Field SparseMotion::product(const Field& w) const {
   return result;
 }
 
+// The solution of a pole, 0 in all rows.
+double* SparseMotion::cleared(std::size_t pole) {
+  NumberBlock& x = solutions_[pole];
+  const auto count = static_cast<std::size_t>(pattern_->solve_size()) * ComplexFactor::line;
+  if (x.count() != count) x = NumberBlock(count);
+  std::fill_n(x.begin(), count, 0.0);
+  return x.begin();
+}
+
 // Leaves x of each pole in `solutions_`. `lack` is K w - f, `growth` f', per second.
 Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, const Field& lack,
                                  const Field& growth, const Field& v) {
@@ -270,14 +278,13 @@ Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, co
   const int size = pattern_->size();
   const auto masses = static_cast<int>(matrix_->inertia.size());
   for_each_pole([&](std::size_t pole) {
-    constexpr int half = ComplexFactor::row_numbers / 2;
+    constexpr int half = ComplexFactor::line / 2;
     const int number = static_cast<int>(pole);
     const Complex of_growth = step.of_growth(number), of_v = step.rate(number) * step.of_lack();
-    std::vector<double>& x = solutions_[pole];
-    x.assign(static_cast<std::size_t>(size) * ComplexFactor::row_numbers, 0);
+    double* const x = cleared(pole);
     for (int place = 0; place < size; ++place) {
-      const int row = ComplexFactor::row_of(*pattern_, place);
-      double* const to = x.data() + long{place} * ComplexFactor::row_numbers;
+      const int row = pattern_->order()[place];
+      double* const to = x + long{place} * ComplexFactor::line;
       for (int c = 0; c < 3; ++c) {
         Complex side = of_growth * growth(row, c) + Complex{step.of_lack() * lack(row, c), 0};
         if (row < masses) side = side - of_v * (matrix_->inertia[row] * v(row, c));
@@ -285,7 +292,7 @@ Result<void> SparseMotion::solve(const Factors& factors, const SubStep& step, co
         to[half + c] = side.im;
       }
     }
-    (*factors.of_pole)[pole].solve(*pattern_, x.data());
+    (*factors.of_pole)[pole].solve(alone_, x);
   });
   counts_.solves += 2 * pole_count;
   return {};
@@ -319,13 +326,12 @@ Result<void> SparseMotion::advance(const TimeSteps& steps, const ForceChange& fo
     if (auto solved = solve(**factors, step, lack, growth, v); !solved) return solved;
     double doubt = 0, before = 0, after = 0, speed = 0, old_speed = 0;
     for (int place = 0; place < size; ++place) {
-      const int row = ComplexFactor::row_of(*pattern_, place);
+      const int row = pattern_->order()[place];
       for (int c = 0; c < 3; ++c) {
         double moved = 0, velocity = 0, uncertain = 0;
         for (int pole = 0; pole < pole_count; ++pole) {
-          constexpr int half = ComplexFactor::row_numbers / 2;
-          const double* const at =
-              solutions_[pole].data() + long{place} * ComplexFactor::row_numbers + c;
+          constexpr int half = ComplexFactor::line / 2;
+          const double* const at = solutions_[pole].begin() + long{place} * ComplexFactor::line + c;
           const Complex x{at[0], at[half]};
           moved += (step.to_w(pole) * x).re;
           velocity += (step.to_v(pole) * x).re;

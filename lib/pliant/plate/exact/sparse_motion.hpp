@@ -12,9 +12,9 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
-#include "pliant/plate/exact/complex_factor.hpp"
 #include "pliant/plate/exact/substeps.hpp"
 #include "pliant/plate/solver_choice.hpp"
+#include "pliant/plate/sparse/supernodal_factor.hpp"
 #include "pliant/plate/time_steps.hpp"
 
 namespace pliant {
@@ -36,7 +36,10 @@ struct ForceChange {
 /// if they are there; what is reserved is the same. Internal to plate.
 class SparseMotion {
  public:
-  explicit SparseMotion(const RunContext& context) : context_(context), memory_(context.memory) {}
+  explicit SparseMotion(const RunContext& context)
+      : context_(context), alone_(context), memory_(context.memory) {
+    alone_.threads = nullptr;
+  }
 
   /// Prepares for a matrix. Reuse: keeps factors if it equals the last one, else the order if its
   /// pattern does; this never changes a bit. Errors: OutOfMemory.
@@ -50,6 +53,7 @@ class SparseMotion {
   std::size_t memory() const { return memory_.bytes(); }
 
  private:
+  using ComplexFactor = SupernodalNumbers<Complex>;
   // One for each pole, or the one that holds.
   using ComplexFactors = std::vector<ComplexFactor>;
 
@@ -61,13 +65,14 @@ class SparseMotion {
   struct PatternItem;
   struct FactorsItem;
   // Workspace of one pole: its solution in the order of the factor.
-  using Solutions = std::array<std::vector<double>, pole_count>;
+  using Solutions = std::array<NumberBlock, pole_count>;
 
   Result<void> find_pattern(const SparseMatrix& matrix);
   Result<std::shared_ptr<const ComplexFactors>> find_factors(
       double length, std::size_t count, const std::function<Result<void>(ComplexFactors&)>& make);
   Result<Factors*> factors_for(double length);
   Result<void> find_massless(const Field& force, Field& w);
+  double* cleared(std::size_t pole);
   Field product(const Field& w) const;
   Result<void> solve(const Factors& factors, const SubStep& step, const Field& lack,
                      const Field& growth, const Field& v);
@@ -75,9 +80,10 @@ class SparseMotion {
   void for_each_pole(const Work& work);
 
   RunContext context_;
+  RunContext alone_;  // of one pole
   MemoryShare memory_;
   std::shared_ptr<const MovingMatrix> matrix_;  // null: none
-  std::shared_ptr<const FactorPattern> pattern_ = std::make_shared<const FactorPattern>();
+  std::shared_ptr<const SupernodePattern> pattern_ = std::make_shared<const SupernodePattern>();
   std::list<Factors> factors_;                     // the last used first
   std::shared_ptr<const ComplexFactors> holding_;  // finds unknowns without a mass; null: not yet
   Solutions solutions_;

@@ -198,7 +198,7 @@ struct SupernodesView {
   const Supernode* supernodes = nullptr;  ///< in the order of their columns
   const int* rows = nullptr;
   const double* entries = nullptr;
-  const double* pivots = nullptr;  ///< D
+  const double* pivots = nullptr;  ///< D; complex: 1/D
 };
 
 /// Rows of a panel: a matrix's rows, so many at a time, column by column.
@@ -266,6 +266,22 @@ struct FlowStep {
   double* tangent = nullptr;  ///< as k changes by dk, k_p does by whole dk + along xi (xi . C dk)
   double* work = nullptr;     ///< as many as on places
   double* forces = nullptr;   ///< to which those of the growth are added
+};
+
+/// Those of a factor in supernodes, of real numbers or of complex ones. A complex number is two
+/// doubles; of a column of a panel, and of a row that is solved, the real parts come first.
+struct FactorKernels {
+  /// Subtracts from each column j of first to last - 1 the columns k < j, k < depth, times row j of
+  /// L.
+  void (*reduce_panels)(const PanelsView& view, int first, int last, int depth);
+
+  /// Subtracts from number n of each row the product of its row of L and row n of the panels.
+  void (*subtract_products)(const ProductsView& view);
+
+  /// Solve for three right-hand sides with L of one supernode, and with D L^T of it. `x`: of each
+  /// row `row_numbers`, the right-hand sides and zeros, then the solutions.
+  void (*solve_forward)(const SupernodesView& factor, int supernode, double* x);
+  void (*solve_backward)(const SupernodesView& factor, int supernode, double* x);
 };
 
 /// The kernels for one width of vectors.
@@ -340,17 +356,7 @@ struct PlateKernels {
   /// The largest absolute value of so many numbers; leaves out those that are none.
   double (*longest)(long count, const double* numbers);
 
-  /// Subtracts from each column j of first to last - 1 the columns k < j, k < depth, times row j of
-  /// L.
-  void (*reduce_panels)(const PanelsView& view, int first, int last, int depth);
-
-  /// Subtracts from number n of each row the product of its row of L and row n of the panels.
-  void (*subtract_products)(const ProductsView& view);
-
-  /// Solve for three right-hand sides with L of one supernode, and with D L^T of it. `x`: of each
-  /// row `row_numbers`, the right-hand sides and zeros, then the solutions.
-  void (*solve_forward)(const SupernodesView& factor, int supernode, double* x);
-  void (*solve_backward)(const SupernodesView& factor, int supernode, double* x);
+  FactorKernels factor, complex_factor;
 };
 
 /// The kernels that this machine can run, the widest first; the last one runs everywhere. nullptr

@@ -4,118 +4,12 @@
 namespace pliant {
 namespace {
 
-// A column of a panel is an `Eight`.
+// A column of a panel, of real numbers, is an `Eight`.
 static_assert(panel_rows == 8);
 
 PLIANT_INLINE void subtract(Eight& from, const Eight& column, double factor) {
 #pragma GCC unroll 4
   for (int k = 0; k < parts; ++k) from.part[k] = from.part[k] - column.part[k] * (factor - Lanes{});
-}
-
-// Columns `first` to `first + Columns - 1` of `Panels` panels.
-template <int Columns, int Panels>
-PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* lower, int first,
-                                  int depth) {
-  Eight sums[Panels][Columns];
-  const double* of_column[Columns];
-#pragma GCC unroll 4
-  for (int j = 0; j < Columns; ++j)
-    of_column[j] = lower + static_cast<long>(first + j) * (first + j - 1) / 2;
-#pragma GCC unroll 4
-  for (int p = 0; p < Panels; ++p) {
-#pragma GCC unroll 4
-    for (int j = 0; j < Columns; ++j)
-      sums[p][j] = load8(panels + p * stride + static_cast<long>(first + j) * panel_rows);
-  }
-  const int common = first < depth ? first : depth;
-  for (int k = 0; k < common; ++k) {
-#pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) {
-      const Eight column = load8(panels + p * stride + static_cast<long>(k) * panel_rows);
-#pragma GCC unroll 4
-      for (int j = 0; j < Columns; ++j) subtract(sums[p][j], column, of_column[j][k]);
-    }
-  }
-  if (first < depth) {
-#pragma GCC unroll 4
-    for (int j = 1; j < Columns; ++j) {
-#pragma GCC unroll 4
-      for (int k = 0; k < j; ++k) {
-#pragma GCC unroll 4
-        for (int p = 0; p < Panels; ++p) subtract(sums[p][j], sums[p][k], of_column[j][first + k]);
-      }
-    }
-  }
-#pragma GCC unroll 4
-  for (int p = 0; p < Panels; ++p) {
-#pragma GCC unroll 4
-    for (int j = 0; j < Columns; ++j)
-      store8(panels + p * stride + static_cast<long>(first + j) * panel_rows, sums[p][j]);
-  }
-}
-
-template <int Panels>
-PLIANT_INLINE void reduce_some_panels(double* panels, long stride, const double* lower, int first,
-                                      int last, int depth) {
-  int column = first;
-  for (; column + 4 <= last; column += 4)
-    reduce_columns<4, Panels>(panels, stride, lower, column, depth);
-  for (; column < last; ++column) reduce_columns<1, Panels>(panels, stride, lower, column, depth);
-}
-
-void reduce_panels(const PanelsView& view, int first, int last, int depth) {
-  constexpr int at_once = lanes == panel_rows ? 2 : 1;  // as registers allow
-  int panel = 0;
-  for (; panel + at_once <= view.count; panel += at_once) {
-    reduce_some_panels<at_once>(view.panels + panel * view.stride, view.stride, view.lower, first,
-                                last, depth);
-  }
-  for (; panel < view.count; ++panel) {
-    reduce_some_panels<1>(view.panels + panel * view.stride, view.stride, view.lower, first, last,
-                          depth);
-  }
-}
-
-template <int Rows, int Panels>
-PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int panel) {
-  const double* const panels = view.panels + panel * view.panel_stride;
-  const double* const of_l = view.of_l + static_cast<long>(row) * view.columns;
-  double* const to = view.rows + row * view.stride + static_cast<long>(panel) * panel_rows;
-  Eight sums[Rows][Panels];
-#pragma GCC unroll 4
-  for (int r = 0; r < Rows; ++r) {
-#pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) sums[r][p] = load8(to + r * view.stride + p * panel_rows);
-  }
-  for (int k = 0; k < view.columns; ++k) {
-#pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) {
-      const Eight column =
-          load8(panels + p * view.panel_stride + static_cast<long>(k) * panel_rows);
-#pragma GCC unroll 4
-      for (int r = 0; r < Rows; ++r)
-        subtract(sums[r][p], column, of_l[static_cast<long>(r) * view.columns + k]);
-    }
-  }
-#pragma GCC unroll 4
-  for (int r = 0; r < Rows; ++r) {
-#pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) store8(to + r * view.stride + p * panel_rows, sums[r][p]);
-  }
-}
-
-template <int Rows>
-PLIANT_INLINE void subtract_products_of(const ProductsView& view, int row) {
-  constexpr int at_once = lanes == panel_rows ? 2 : 1;
-  int panel = 0;
-  for (; panel + at_once <= view.panel_count; panel += at_once)
-    subtract_some_products<Rows, at_once>(view, row, panel);
-  for (; panel < view.panel_count; ++panel) subtract_some_products<Rows, 1>(view, row, panel);
-}
-
-void subtract_products(const ProductsView& view) {
-  if (view.count == 4) return subtract_products_of<4>(view, 0);
-  for (int row = 0; row < view.count; ++row) subtract_products_of<1>(view, row);
 }
 
 // The numbers of a row, in one or more vectors: one operation for each number, whatever the width.
@@ -154,144 +48,327 @@ PLIANT_INLINE void subtract(Row& from, const Row& row, double factor) {
     from.part[k] = from.part[k] - row.part[k] * (factor - RowLanes{});
 }
 
+// Real and imaginary parts.
+template <class Part>
+struct Pair {
+  Part re, im;
+};
+template <class Part>
+PLIANT_INLINE Pair<Part> operator+(const Pair<Part>& a, const Pair<Part>& b) {
+  return {a.re + b.re, a.im + b.im};
+}
+template <class Part>
+PLIANT_INLINE void subtract(Pair<Part>& from, const Pair<Part>& x, ComplexNumber factor) {
+  subtract(from.re, x.re, factor.re);
+  subtract(from.re, x.im, -factor.im);
+  subtract(from.im, x.re, factor.im);
+  subtract(from.im, x.im, factor.re);
+}
+
+// What a factor is made of: real numbers, or complex ones, of two doubles each.
+struct RealNumbers {
+  using Column = Eight;
+  using Line = Row;
+  static constexpr int width = 1;
+
+  PLIANT_INLINE static Column load_column(const double* from) { return load8(from); }
+  PLIANT_INLINE static void store_column(double* to, const Column& x) { store8(to, x); }
+  PLIANT_INLINE static Line load_line(const double* x, long row) { return load_row(x, row); }
+  PLIANT_INLINE static void store_line(double* x, long row, const Line& line) {
+    store_row(x, row, line);
+  }
+  PLIANT_INLINE static double entry(const double* from, long k) { return from[k]; }
+  PLIANT_INLINE static Line over(const Line& line, const double* pivots, long k) {
+    return line / row_of(pivots[k]);
+  }
+};
+struct ComplexNumbers {
+  using Column = Pair<Eight>;
+  using Line = Pair<Row>;
+  static constexpr int width = 2;
+
+  PLIANT_INLINE static Column load_column(const double* from) {
+    return {load8(from), load8(from + panel_rows)};
+  }
+  PLIANT_INLINE static void store_column(double* to, const Column& x) {
+    store8(to, x.re);
+    store8(to + panel_rows, x.im);
+  }
+  PLIANT_INLINE static Line load_line(const double* x, long row) {
+    return {load_row(x, 2 * row), load_row(x, 2 * row + 1)};
+  }
+  PLIANT_INLINE static void store_line(double* x, long row, const Line& line) {
+    store_row(x, 2 * row, line.re);
+    store_row(x, 2 * row + 1, line.im);
+  }
+  PLIANT_INLINE static ComplexNumber entry(const double* from, long k) {
+    return {from[2 * k], from[2 * k + 1]};
+  }
+  // The pivots are 1/D.
+  PLIANT_INLINE static Line over(const Line& line, const double* pivots, long k) {
+    const auto [re, im] = entry(pivots, k);
+    Line product = {};
+    subtract(product, line, {-re, -im});
+    return product;
+  }
+};
+
+// Columns `first` to `first + Columns - 1` of `Panels` panels.
+template <class N, int Columns, int Panels>
+PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* lower, int first,
+                                  int depth) {
+  typename N::Column sums[Panels][Columns];
+  const double* of_column[Columns];
+#pragma GCC unroll 4
+  for (int j = 0; j < Columns; ++j)
+    of_column[j] = lower + N::width * (static_cast<long>(first + j) * (first + j - 1) / 2);
+#pragma GCC unroll 4
+  for (int p = 0; p < Panels; ++p) {
+#pragma GCC unroll 4
+    for (int j = 0; j < Columns; ++j)
+      sums[p][j] = N::load_column(panels + p * stride +
+                                  static_cast<long>(first + j) * (N::width * panel_rows));
+  }
+  const int common = first < depth ? first : depth;
+  for (int k = 0; k < common; ++k) {
+#pragma GCC unroll 4
+    for (int p = 0; p < Panels; ++p) {
+      const auto column =
+          N::load_column(panels + p * stride + static_cast<long>(k) * (N::width * panel_rows));
+#pragma GCC unroll 4
+      for (int j = 0; j < Columns; ++j) subtract(sums[p][j], column, N::entry(of_column[j], k));
+    }
+  }
+  if (first < depth) {
+#pragma GCC unroll 4
+    for (int j = 1; j < Columns; ++j) {
+#pragma GCC unroll 4
+      for (int k = 0; k < j; ++k) {
+#pragma GCC unroll 4
+        for (int p = 0; p < Panels; ++p) subtract(sums[p][j], sums[p][k], N::entry(of_column[j], first + k));
+      }
+    }
+  }
+#pragma GCC unroll 4
+  for (int p = 0; p < Panels; ++p) {
+#pragma GCC unroll 4
+    for (int j = 0; j < Columns; ++j)
+      N::store_column(panels + p * stride + static_cast<long>(first + j) * (N::width * panel_rows),
+                      sums[p][j]);
+  }
+}
+
+template <class N, int Panels>
+PLIANT_INLINE void reduce_some_panels(double* panels, long stride, const double* lower, int first,
+                                      int last, int depth) {
+  int column = first;
+  for (; column + 4 <= last; column += 4)
+    reduce_columns<N, 4, Panels>(panels, stride, lower, column, depth);
+  for (; column < last; ++column) reduce_columns<N, 1, Panels>(panels, stride, lower, column, depth);
+}
+
+template <class N>
+void reduce_panels(const PanelsView& view, int first, int last, int depth) {
+  constexpr int at_once = N::width == 1 && lanes == panel_rows ? 2 : 1;  // as registers allow
+  int panel = 0;
+  for (; panel + at_once <= view.count; panel += at_once) {
+    reduce_some_panels<N, at_once>(view.panels + panel * view.stride, view.stride, view.lower, first,
+                                last, depth);
+  }
+  for (; panel < view.count; ++panel) {
+    reduce_some_panels<N, 1>(view.panels + panel * view.stride, view.stride, view.lower, first, last,
+                          depth);
+  }
+}
+
+template <class N, int Rows, int Panels>
+PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int panel) {
+  const double* const panels = view.panels + panel * view.panel_stride;
+  const double* const of_l = view.of_l + static_cast<long>(row) * (N::width * view.columns);
+  double* const to =
+      view.rows + row * view.stride + static_cast<long>(panel) * (N::width * panel_rows);
+  typename N::Column sums[Rows][Panels];
+#pragma GCC unroll 4
+  for (int r = 0; r < Rows; ++r) {
+#pragma GCC unroll 4
+    for (int p = 0; p < Panels; ++p) sums[r][p] = N::load_column(to + r * view.stride + p * (N::width * panel_rows));
+  }
+  for (int k = 0; k < view.columns; ++k) {
+#pragma GCC unroll 4
+    for (int p = 0; p < Panels; ++p) {
+      const auto column = N::load_column(panels + p * view.panel_stride +
+                                         static_cast<long>(k) * (N::width * panel_rows));
+#pragma GCC unroll 4
+      for (int r = 0; r < Rows; ++r)
+        subtract(sums[r][p], column, N::entry(of_l, static_cast<long>(r) * view.columns + k));
+    }
+  }
+#pragma GCC unroll 4
+  for (int r = 0; r < Rows; ++r) {
+#pragma GCC unroll 4
+    for (int p = 0; p < Panels; ++p) N::store_column(to + r * view.stride + p * (N::width * panel_rows), sums[r][p]);
+  }
+}
+
+template <class N, int Rows>
+PLIANT_INLINE void subtract_products_of(const ProductsView& view, int row) {
+  constexpr int at_once = N::width == 1 && lanes == panel_rows ? 2 : 1;
+  int panel = 0;
+  for (; panel + at_once <= view.panel_count; panel += at_once)
+    subtract_some_products<N, Rows, at_once>(view, row, panel);
+  for (; panel < view.panel_count; ++panel) subtract_some_products<N, Rows, 1>(view, row, panel);
+}
+
+template <class N>
+void subtract_products(const ProductsView& view) {
+  if (view.count == 4) return subtract_products_of<N, 4>(view, 0);
+  for (int row = 0; row < view.count; ++row) subtract_products_of<N, 1>(view, row);
+}
+
 // Subtracts from `Rows` rows of L, which begin at `entries`, what `columns` rows of x above have
 // for them.
-template <int Rows>
-PLIANT_INLINE void subtract_above(Row (&sums)[Rows], const double* const (&entries)[Rows],
+template <class N, int Rows>
+PLIANT_INLINE void subtract_above(typename N::Line (&sums)[Rows], const double* const (&entries)[Rows],
                                   const double* x, int columns) {
   for (int column = 0; column < columns; ++column) {
-    const Row above = load_row(x, column);
+    const auto above = N::load_line(x, column);
 #pragma GCC unroll 8
-    for (int r = 0; r < Rows; ++r) subtract(sums[r], above, entries[r][column]);
+    for (int r = 0; r < Rows; ++r) subtract(sums[r], above, N::entry(entries[r], column));
   }
 }
 
 // Own rows `first` to `first + Rows - 1`, of which `lower` has the first one's entries of L.
-template <int Rows>
+template <class N, int Rows>
 PLIANT_INLINE void solve_own(const double* lower, int first, double* own) {
-  Row sums[Rows];
+  typename N::Line sums[Rows];
   const double* entries[Rows];
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
-    sums[r] = load_row(own, first + r);
-    entries[r] = lower + r * first + r * (r - 1) / 2;
+    sums[r] = N::load_line(own, first + r);
+    entries[r] = lower + N::width * (r * first + r * (r - 1) / 2);
   }
-  subtract_above<Rows>(sums, entries, own, first);
+  subtract_above<N, Rows>(sums, entries, own, first);
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-    for (int k = 0; k < r; ++k) subtract(sums[r], sums[k], entries[r][first + k]);
-    store_row(own, first + r, sums[r]);
+    for (int k = 0; k < r; ++k) subtract(sums[r], sums[k], N::entry(entries[r], first + k));
+    N::store_line(own, first + r, sums[r]);
   }
 }
 
 // Subtracts from `Rows` rows below what the own rows have for them.
-template <int Rows>
+template <class N, int Rows>
 PLIANT_INLINE void solve_below(const double* entries, int columns, const double* own,
                                const int* rows, double* x) {
-  Row sums[Rows];
+  typename N::Line sums[Rows];
   const double* of_row[Rows];
 #pragma GCC unroll 8
   for (int r = 0; r < Rows; ++r) {
-    sums[r] = load_row(x, rows[r]);
-    of_row[r] = entries + static_cast<long>(r) * columns;
+    sums[r] = N::load_line(x, rows[r]);
+    of_row[r] = entries + static_cast<long>(r) * (N::width * columns);
   }
-  subtract_above<Rows>(sums, of_row, own, columns);
+  subtract_above<N, Rows>(sums, of_row, own, columns);
 #pragma GCC unroll 8
-  for (int r = 0; r < Rows; ++r) store_row(x, rows[r], sums[r]);
+  for (int r = 0; r < Rows; ++r) N::store_line(x, rows[r], sums[r]);
 }
 
 // Subtracts from `Columns` own rows what the rows below have for them, in `Sums` sums each.
-template <int Columns, int Sums>
+template <class N, int Columns, int Sums>
 PLIANT_INLINE void subtract_below(const double* entries, int columns, int count, const int* rows,
                                   const double* x, double* own) {
-  Row sums[Sums][Columns] = {};
+  typename N::Line sums[Sums][Columns] = {};
   int i = 0;
   for (; i + Sums <= count; i += Sums) {
 #pragma GCC unroll 4
     for (int n = 0; n < Sums; ++n) {
-      const Row below = load_row(x, rows[i + n]);
-      const double* const of_row = entries + static_cast<long>(i + n) * columns;
+      const auto below = N::load_line(x, rows[i + n]);
+      const double* const of_row = entries + static_cast<long>(i + n) * (N::width * columns);
 #pragma GCC unroll 8
       for (int column = 0; column < Columns; ++column)
-        subtract(sums[n][column], below, of_row[column]);
+        subtract(sums[n][column], below, N::entry(of_row, column));
     }
   }
   for (; i < count; ++i) {
-    const Row below = load_row(x, rows[i]);
-    const double* const of_row = entries + static_cast<long>(i) * columns;
+    const auto below = N::load_line(x, rows[i]);
+    const double* const of_row = entries + static_cast<long>(i) * (N::width * columns);
 #pragma GCC unroll 8
     for (int column = 0; column < Columns; ++column)
-      subtract(sums[0][column], below, of_row[column]);
+      subtract(sums[0][column], below, N::entry(of_row, column));
   }
 #pragma GCC unroll 8
   for (int column = 0; column < Columns; ++column) {
-    Row sum = sums[0][column];
+    auto sum = sums[0][column];
 #pragma GCC unroll 4
     for (int n = 1; n < Sums; ++n) sum = sum + sums[n][column];
-    store_row(own, column, load_row(own, column) + sum);
+    N::store_line(own, column, N::load_line(own, column) + sum);
   }
 }
 
 // Own rows `first` to `first + Rows - 1`, from which all later ones are subtracted: finds them, and
 // subtracts them from those before.
-template <int Rows>
+template <class N, int Rows>
 PLIANT_INLINE void solve_own_back(const double* lower, int first, double* own) {
-  Row found[Rows];
+  typename N::Line found[Rows];
   const double* entries[Rows];
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
-    found[r] = load_row(own, first + r);
-    entries[r] = lower + r * first + r * (r - 1) / 2;
+    found[r] = N::load_line(own, first + r);
+    entries[r] = lower + N::width * (r * first + r * (r - 1) / 2);
   }
 #pragma GCC unroll 4
   for (int r = Rows - 1; r >= 0; --r) {
 #pragma GCC unroll 4
     for (int later = Rows - 1; later > r; --later)
-      subtract(found[r], found[later], entries[later][first + r]);
-    store_row(own, first + r, found[r]);
+      subtract(found[r], found[later], N::entry(entries[later], first + r));
+    N::store_line(own, first + r, found[r]);
   }
   for (int row = 0; row < first; ++row) {
-    Row sum = load_row(own, row);
+    auto sum = N::load_line(own, row);
 #pragma GCC unroll 4
-    for (int r = Rows - 1; r >= 0; --r) subtract(sum, found[r], entries[r][row]);
-    store_row(own, row, sum);
+    for (int r = Rows - 1; r >= 0; --r) subtract(sum, found[r], N::entry(entries[r], row));
+    N::store_line(own, row, sum);
   }
 }
 
-constexpr long lower_entries(int rows) { return static_cast<long>(rows) * (rows - 1) / 2; }
+// Doubles of a strict lower triangle.
+template <class N>
+constexpr long lower_entries(int rows) {
+  return N::width * (static_cast<long>(rows) * (rows - 1) / 2);
+}
 
+template <class N>
 void solve_forward(const SupernodesView& factor, int supernode, double* x) {
   const Supernode& node = factor.supernodes[supernode];
   const int columns = node.columns;
-  const double* const lower = factor.entries + node.entries_at;
-  double* const own = x + static_cast<long>(node.first) * row_numbers;
+  const double* const lower = factor.entries + N::width * node.entries_at;
+  double* const own = x + static_cast<long>(node.first) * (N::width * row_numbers);
   int row = 0;
-  for (; row + 4 <= columns; row += 4) solve_own<4>(lower + lower_entries(row), row, own);
-  for (; row < columns; ++row) solve_own<1>(lower + lower_entries(row), row, own);
-  const double* const below = lower + lower_entries(columns);
+  for (; row + 4 <= columns; row += 4) solve_own<N, 4>(lower + lower_entries<N>(row), row, own);
+  for (; row < columns; ++row) solve_own<N, 1>(lower + lower_entries<N>(row), row, own);
+  const double* const below = lower + lower_entries<N>(columns);
   const int* const rows = factor.rows + node.rows_at;
   int i = 0;
   for (; i + 8 <= node.rows; i += 8)
-    solve_below<8>(below + static_cast<long>(i) * columns, columns, own, rows + i, x);
+    solve_below<N, 8>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
   for (; i + 4 <= node.rows; i += 4)
-    solve_below<4>(below + static_cast<long>(i) * columns, columns, own, rows + i, x);
+    solve_below<N, 4>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
   for (; i < node.rows; ++i)
-    solve_below<1>(below + static_cast<long>(i) * columns, columns, own, rows + i, x);
+    solve_below<N, 1>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
 }
 
+template <class N>
 void solve_backward(const SupernodesView& factor, int supernode, double* x) {
   const Supernode& node = factor.supernodes[supernode];
   const int columns = node.columns;
-  const double* const lower = factor.entries + node.entries_at;
-  const double* const below = lower + lower_entries(columns);
-  double* const own = x + static_cast<long>(node.first) * row_numbers;
+  const double* const lower = factor.entries + N::width * node.entries_at;
+  const double* const below = lower + lower_entries<N>(columns);
+  double* const own = x + static_cast<long>(node.first) * (N::width * row_numbers);
   const int* const rows = factor.rows + node.rows_at;
   for (int row = 0; row < columns; ++row)
-    store_row(own, row, load_row(own, row) / row_of(factor.pivots[node.first + row]));
+    N::store_line(own, row, N::over(N::load_line(own, row), factor.pivots, node.first + row));
   const auto subtract_from = [&]<int Columns, int Sums>(int column) PLIANT_INLINED {
-    subtract_below<Columns, Sums>(below + column, columns, node.rows, rows, x,
-                                  own + column * row_numbers);
+    subtract_below<N, Columns, Sums>(below + N::width * column, columns, node.rows, rows, x,
+                                     own + column * (N::width * row_numbers));
   };
   int column = 0;
   for (; column + 8 <= columns; column += 8) subtract_from.template operator()<8, 1>(column);
@@ -305,9 +382,13 @@ void solve_backward(const SupernodesView& factor, int supernode, double* x) {
   }
   if (column < columns) subtract_from.template operator()<1, 4>(column);
   int row = columns;
-  for (; row >= 4; row -= 4) solve_own_back<4>(lower + lower_entries(row - 4), row - 4, own);
-  for (; row > 0; --row) solve_own_back<1>(lower + lower_entries(row - 1), row - 1, own);
+  for (; row >= 4; row -= 4) solve_own_back<N, 4>(lower + lower_entries<N>(row - 4), row - 4, own);
+  for (; row > 0; --row) solve_own_back<N, 1>(lower + lower_entries<N>(row - 1), row - 1, own);
 }
+
+template <class N>
+constexpr FactorKernels factor_kernels = {reduce_panels<N>, subtract_products<N>, solve_forward<N>,
+                                          solve_backward<N>};
 
 }  // namespace
 }  // namespace pliant

@@ -31,9 +31,7 @@ const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {PLIANT_KERNELS_NAME,
                                                             combine,
                                                             add_scaled,
                                                             longest,
-                                                            reduce_panels,
-                                                            subtract_products,
-                                                            solve_forward,
-                                                            solve_backward};
+                                                            factor_kernels<RealNumbers>,
+                                                            factor_kernels<ComplexNumbers>};
 
 }  // namespace pliant
