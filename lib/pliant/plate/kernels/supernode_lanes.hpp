@@ -48,21 +48,36 @@ PLIANT_INLINE void subtract(Row& from, const Row& row, double factor) {
     from.part[k] = from.part[k] - row.part[k] * (factor - RowLanes{});
 }
 
-// Real and imaginary parts.
-template <class Part>
-struct Pair {
-  Part re, im;
+// A column of a panel of complex numbers.
+struct ComplexColumn {
+  Eight re, im;
 };
-template <class Part>
-PLIANT_INLINE Pair<Part> operator+(const Pair<Part>& a, const Pair<Part>& b) {
-  return {a.re + b.re, a.im + b.im};
-}
-template <class Part>
-PLIANT_INLINE void subtract(Pair<Part>& from, const Pair<Part>& x, ComplexNumber factor) {
+PLIANT_INLINE void subtract(ComplexColumn& from, const ComplexColumn& x, ComplexNumber factor) {
   subtract(from.re, x.re, factor.re);
   subtract(from.re, x.im, -factor.im);
   subtract(from.im, x.re, factor.im);
   subtract(from.im, x.im, factor.re);
+}
+
+// i times the numbers of a complex row, which has its real parts first.
+PLIANT_INLINE Eight turned(const Eight& x) {
+  Eight y;
+#if PLIANT_LANES == 8
+  const Lanes signs = {-1, -1, -1, -1, 1, 1, 1, 1};
+  y.part[0] = __builtin_shufflevector(x.part[0], x.part[0], 4, 5, 6, 7, 0, 1, 2, 3) * signs;
+#else
+  constexpr int half = parts / 2;
+#pragma GCC unroll 2
+  for (int k = 0; k < half; ++k) {
+    y.part[k] = -x.part[k + half];
+    y.part[k + half] = x.part[k];
+  }
+#endif
+  return y;
+}
+PLIANT_INLINE void subtract(Eight& from, const Eight& x, ComplexNumber factor) {
+  subtract(from, x, factor.re);
+  subtract(from, turned(x), factor.im);
 }
 
 // What a factor is made of: real numbers, or complex ones, of two doubles each.
@@ -83,8 +98,8 @@ struct RealNumbers {
   }
 };
 struct ComplexNumbers {
-  using Column = Pair<Eight>;
-  using Line = Pair<Row>;
+  using Column = ComplexColumn;
+  using Line = Eight;
   static constexpr int width = 2;
 
   PLIANT_INLINE static Column load_column(const double* from) {
@@ -95,11 +110,10 @@ struct ComplexNumbers {
     store8(to + panel_rows, x.im);
   }
   PLIANT_INLINE static Line load_line(const double* x, long row) {
-    return {load_row(x, 2 * row), load_row(x, 2 * row + 1)};
+    return load8(x + row * (width * row_numbers));
   }
   PLIANT_INLINE static void store_line(double* x, long row, const Line& line) {
-    store_row(x, 2 * row, line.re);
-    store_row(x, 2 * row + 1, line.im);
+    store8(x + row * (width * row_numbers), line);
   }
   PLIANT_INLINE static ComplexNumber entry(const double* from, long k) {
     return {from[2 * k], from[2 * k + 1]};
@@ -145,7 +159,8 @@ PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* low
 #pragma GCC unroll 4
       for (int k = 0; k < j; ++k) {
 #pragma GCC unroll 4
-        for (int p = 0; p < Panels; ++p) subtract(sums[p][j], sums[p][k], N::entry(of_column[j], first + k));
+        for (int p = 0; p < Panels; ++p)
+          subtract(sums[p][j], sums[p][k], N::entry(of_column[j], first + k));
       }
     }
   }
@@ -164,7 +179,8 @@ PLIANT_INLINE void reduce_some_panels(double* panels, long stride, const double*
   int column = first;
   for (; column + 4 <= last; column += 4)
     reduce_columns<N, 4, Panels>(panels, stride, lower, column, depth);
-  for (; column < last; ++column) reduce_columns<N, 1, Panels>(panels, stride, lower, column, depth);
+  for (; column < last; ++column)
+    reduce_columns<N, 1, Panels>(panels, stride, lower, column, depth);
 }
 
 template <class N>
@@ -172,12 +188,12 @@ void reduce_panels(const PanelsView& view, int first, int last, int depth) {
   constexpr int at_once = N::width == 1 && lanes == panel_rows ? 2 : 1;  // as registers allow
   int panel = 0;
   for (; panel + at_once <= view.count; panel += at_once) {
-    reduce_some_panels<N, at_once>(view.panels + panel * view.stride, view.stride, view.lower, first,
-                                last, depth);
+    reduce_some_panels<N, at_once>(view.panels + panel * view.stride, view.stride, view.lower,
+                                   first, last, depth);
   }
   for (; panel < view.count; ++panel) {
-    reduce_some_panels<N, 1>(view.panels + panel * view.stride, view.stride, view.lower, first, last,
-                          depth);
+    reduce_some_panels<N, 1>(view.panels + panel * view.stride, view.stride, view.lower, first,
+                             last, depth);
   }
 }
 
@@ -191,7 +207,8 @@ PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) sums[r][p] = N::load_column(to + r * view.stride + p * (N::width * panel_rows));
+    for (int p = 0; p < Panels; ++p)
+      sums[r][p] = N::load_column(to + r * view.stride + p * (N::width * panel_rows));
   }
   for (int k = 0; k < view.columns; ++k) {
 #pragma GCC unroll 4
@@ -206,7 +223,8 @@ PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
-    for (int p = 0; p < Panels; ++p) N::store_column(to + r * view.stride + p * (N::width * panel_rows), sums[r][p]);
+    for (int p = 0; p < Panels; ++p)
+      N::store_column(to + r * view.stride + p * (N::width * panel_rows), sums[r][p]);
   }
 }
 
@@ -228,8 +246,9 @@ void subtract_products(const ProductsView& view) {
 // Subtracts from `Rows` rows of L, which begin at `entries`, what `columns` rows of x above have
 // for them.
 template <class N, int Rows>
-PLIANT_INLINE void subtract_above(typename N::Line (&sums)[Rows], const double* const (&entries)[Rows],
-                                  const double* x, int columns) {
+PLIANT_INLINE void subtract_above(typename N::Line (&sums)[Rows],
+                                  const double* const (&entries)[Rows], const double* x,
+                                  int columns) {
   for (int column = 0; column < columns; ++column) {
     const auto above = N::load_line(x, column);
 #pragma GCC unroll 8
@@ -349,11 +368,14 @@ void solve_forward(const SupernodesView& factor, int supernode, double* x) {
   const int* const rows = factor.rows + node.rows_at;
   int i = 0;
   for (; i + 8 <= node.rows; i += 8)
-    solve_below<N, 8>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
+    solve_below<N, 8>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i,
+                      x);
   for (; i + 4 <= node.rows; i += 4)
-    solve_below<N, 4>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
+    solve_below<N, 4>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i,
+                      x);
   for (; i < node.rows; ++i)
-    solve_below<N, 1>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i, x);
+    solve_below<N, 1>(below + static_cast<long>(i) * (N::width * columns), columns, own, rows + i,
+                      x);
 }
 
 template <class N>
