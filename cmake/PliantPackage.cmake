@@ -1,4 +1,4 @@
-# Packages: `cpack --preset release` makes a .deb and a .tar.gz of the files that `cmake --install`
+# Packages: `cpack --preset command` makes a .deb and a .tar.gz of the files that `cmake --install`
 # installs, in build/release/packages. See docs/architecture.md, "Packages".
 
 # Documents, in the same folders as in the source, so that their links work.
