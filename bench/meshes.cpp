@@ -8,11 +8,13 @@
 //             too
 //   (b)       the same with its supernodal factor and the system's BLAS, one thread
 //   memory    of the factor, as a part of (a)'s
+//   limit     40 times reading as many bytes as the factor has
 //   read      an OBJ file; prepare: nodes, faces, triangles, and the tree for selecting
 //   select    a force that reaches a hundredth of the surface
 //
 // Times are medians in ms, in brackets as a part of (a) and of (b). Run:
-// build/release/bench/meshes [--large] [--threads N]
+// build/release/bench/meshes [--large] [--threads N] [--csv FILE]. --large adds 10^5 nodes; with
+// --csv, which prints the rows for script/performance_plot, also 10^6, without (a) and (b).
 
 #include "support/meshes.hpp"
 
@@ -22,7 +24,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -111,7 +113,20 @@ FactorCost cost_of_supernodal([[maybe_unused]] const SparseMatrix& matrix,
   return cost;
 }
 
-void measure_frames(int count, bool has_quads, ThreadPool* threads) {
+// The time of 20 solves that only read the factor. [ms]
+double limit_of(std::size_t bytes, int repetitions) {
+  const Eigen::ArrayXd numbers =
+      Eigen::ArrayXd::Ones(static_cast<Eigen::Index>(bytes / sizeof(double)));
+  volatile double sum = 0;
+  return 2 * steps * median_ms(repetitions, [&] { sum = numbers.sum(); });
+}
+
+struct Frames {
+  int nodes = 0;
+  double kept = 0, sliding = 0, limit = 0;  // [ms]
+};
+
+Frames measure_frames(int count, bool has_quads, ThreadPool* threads) {
   const Mesh mesh = testing::square(count, 1, 0.3, has_quads);
   const RunContext context{.threads = threads};
   TriangleBody body(std::make_shared<TriangleSurface>(make_surface(mesh).value()),
@@ -131,20 +146,32 @@ void measure_frames(int count, bool has_quads, ThreadPool* threads) {
         in.dynamics.shift(in.frame_length / steps) * patch.masses[k];
   }
   const FactorCost ours = cost_of(matrix, SolverChoice::Supernodal, context, repetitions);
-  const FactorCost simplicial = cost_of(matrix, SolverChoice::Cholmod, {}, repetitions);
-  const FactorCost supernodal = cost_of_supernodal(matrix, repetitions);
   const double kept = median_ms(repetitions, [&] { step(in); });
   double x = 0;
   const double sliding = median_ms(repetitions, [&] { step(inputs_of(poke(x += 1e-3, 0.45))); });
-  fmt::print(
-      "| {} | {} | {:.0f} ({:.2f}, {:.2f}) | {:.0f} ({:.2f}, {:.2f}) | {:.0f} + {:.0f} | "
-      "{:.0f} ({:.2f}, {:.2f}) | {:.2f} |\n",
-      body.last_step().unknown_count(), has_quads ? "quads" : "triangles", kept,
-      kept / simplicial.solves, kept / supernodal.solves, sliding, sliding / simplicial.all(),
-      sliding / supernodal.all(), ours.order, ours.numbers, ours.solves,
-      ours.solves / simplicial.solves, ours.solves / supernodal.solves,
-      static_cast<double>(ours.bytes) / static_cast<double>(simplicial.bytes));
+  const int nodes = body.last_step().unknown_count();
+  const auto parts = [](double time, const std::string& part) {
+    return fmt::format("{:.0f} {}", time, part);
+  };
+  std::string of_kept, of_sliding, of_solves, memory = "-";
+  if (count < 1000) {
+    const FactorCost simplicial = cost_of(matrix, SolverChoice::Cholmod, {}, repetitions);
+    const FactorCost supernodal = cost_of_supernodal(matrix, repetitions);
+    const auto beside = [](double time, double one, double other) {
+      return fmt::format("({:.2f}, {:.2f})", time / one, time / other);
+    };
+    of_kept = beside(kept, simplicial.solves, supernodal.solves);
+    of_sliding = beside(sliding, simplicial.all(), supernodal.all());
+    of_solves = beside(ours.solves, simplicial.solves, supernodal.solves);
+    memory = fmt::format("{:.2f}",
+                         static_cast<double>(ours.bytes) / static_cast<double>(simplicial.bytes));
+  }
+  const double limit = limit_of(ours.bytes, repetitions);
+  fmt::print("| {} | {} | {} | {} | {:.0f} + {:.0f} | {} | {:.0f} | {} |\n", nodes,
+             has_quads ? "quads" : "triangles", parts(kept, of_kept), parts(sliding, of_sliding),
+             ours.order, ours.numbers, parts(ours.solves, of_solves), limit, memory);
   std::fflush(stdout);
+  return {nodes, kept, sliding, limit};
 }
 
 void measure_preparation(int count) {
@@ -190,17 +217,33 @@ void measure_preparation(int count) {
 int main(int count, char** arguments) {
   bool is_large = false;
   int threads = 1;
-  if (!read_options(count, arguments, {{"--large", &is_large}, {"--threads", &threads}},
-                    "meshes [--large] [--threads N]"))
+  std::string csv;
+  if (!read_options(count, arguments,
+                    {{"--large", &is_large}, {"--threads", &threads}, {"--csv", &csv}},
+                    "meshes [--large] [--threads N] [--csv FILE]"))
     return 2;
   ThreadPool pool(std::max(1, threads));
   ThreadPool* const used = threads > 1 ? &pool : nullptr;
   fmt::print(
-      "| nodes inside | faces | kept | sliding | order + numbers | 20 solves | memory |\n"
-      "|---|---|---|---|---|---|---|\n");
+      "| nodes inside | faces | kept | sliding | order + numbers | 20 solves | limit | memory |\n"
+      "|---|---|---|---|---|---|---|---|\n");
+  std::vector<Frames> rows;
   for (const int side : {40, 125}) {
-    for (const bool has_quads : {false, true}) measure_frames(side, has_quads, used);
+    rows.push_back(measure_frames(side, false, used));
+    measure_frames(side, true, used);
   }
-  if (is_large) measure_frames(395, false, used);
-  measure_preparation(707);
+  if (is_large) rows.push_back(measure_frames(395, false, used));
+  if (csv.empty()) {
+    measure_preparation(707);
+    return 0;
+  }
+  rows.push_back(measure_frames(1250, false, used));
+  std::ofstream out(csv);
+  out << "nodes,kept,sliding,limit\n";
+  for (const Frames& row : rows)
+    out << fmt::format("{},{},{},{}\n", row.nodes, row.kept, row.sliding, row.limit);
+  out.close();
+  if (out) return 0;
+  fmt::print(stderr, "meshes: cannot write {}\n", csv);
+  return 1;
 }
