@@ -128,6 +128,9 @@ Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, d
                            .shapes = irregular_shapes(count),
                            .context = plate.context(),
                            .shift = shift};
+  vibrating.rough = [&plate](const Field& forces) {
+    return plate.solve(forces, TrianglePlate::Accuracy::Rough);
+  };
   if (shift > 0) return vibrating;
   vibrating.matrix = [&plate, bending] { return plate.stiffness(bending); };
   vibrating.solver = plate.solver();
@@ -192,7 +195,7 @@ Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,
     if (plate.context.is_stopped()) return interrupted();
     Field right_hand_side = Field::Zero(shape.size(), 3);
     right_hand_side.col(0) = plate.masses.cwiseProduct(basis.col(count - 1));
-    auto solved = plate.solve(right_hand_side);
+    auto solved = plate.solve_roughly(right_hand_side);
     if (!solved) return fail(solved.error());
     Eigen::VectorXd next = solved->col(0);
     projected(count - 1, count - 1) = dot(basis.col(count - 1), next);

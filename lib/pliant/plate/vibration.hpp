@@ -18,6 +18,8 @@ struct VibratingPlate {
   Field shapes;            ///< #unknowns x 3: with a part along each slow vibration, to start with
   RunContext context;      ///< its stop request is called before every pass
   double shift = 0;        ///< >= 0; > 0 if nothing holds the plate [1/uv^4]
+  /// The same as `solve`, but that rounding is never corrected; empty: `solve` is as quick.
+  Solve rough = {};
   /// #unknowns x up to 3: motions K w = 0 that are known.
   Eigen::MatrixXd rigid = {};
   /// Makes the upper triangle of K, and `solver` is by whose factor it is solved: a plate of equal
@@ -27,6 +29,8 @@ struct VibratingPlate {
   /// Makes a solve for another shift, perhaps in place of `solve`: for a shift < 0 too, if K +
   /// shift M is positive definite. Errors: SolverFailed if it is not. Empty: none is made.
   std::function<Result<Solve>(double shift)> shifted = {};
+
+  Result<Field> solve_roughly(const Field& forces) const { return (rough ? rough : solve)(forces); }
 };
 
 /// The unknowns of a plate, rim and tangents 0, with the nodes' shares of area as masses, times the

@@ -17,18 +17,19 @@ RefinedFactor::RefinedFactor(PlateMatrix& matrix, SolverChoice choice, const Run
 Result<void> RefinedFactor::factor(const Eigen::VectorXd& shifts, bool has_same_pattern,
                                    const Eigen::VectorXd& pressure, bool corrects) {
   shifts_ = shifts;
-  const SparseMatrix upper = matrix_.shifted(shifts);
-  if (auto factored = factor_.factor(upper, has_same_pattern); !factored) return factored;
-  return measure(upper, pressure, corrects);
+  pressure_ = pressure;
+  corrects_ = corrects;
+  is_measured_ = refines_ = false;
+  matrix_.close();
+  return factor_.factor(matrix_.shifted(shifts), has_same_pattern);
 }
 
 // Finds the error of a solution: if it is too large, all are corrected.
-Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure,
-                                    bool corrects) {
-  refines_ = false;
-  matrix_.close();
+Result<void> RefinedFactor::measure() {
+  is_measured_ = true;
+  const SparseMatrix upper = matrix_.shifted(shifts_);
   Field forces = Field::Zero(upper.rows(), 3);
-  forces.col(0).head(pressure.size()) = pressure;
+  forces.col(0).head(pressure_.size()) = pressure_;
   if (is_stopped(should_stop_)) return interrupted();
   auto solution = factor_.solve(forces);
   if (!solution) return fail(solution.error());
@@ -39,14 +40,14 @@ Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::Vect
   rough.col(0) = forces.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
   const auto first = factor_.solve(rough);
   if (!first) return fail(first.error());
-  if (!corrects && peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+  if (!corrects_ && peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
   if (auto opened = matrix_.open(); !opened) return opened;
   const Field left = matrix_.residual(shifts_, *solution, forces);
   if (is_stopped(should_stop_)) return interrupted();
   const auto correction = factor_.solve(left);
   if (!correction) return fail(correction.error());
   error_ = peak(*correction) / peak(*solution);
-  refines_ = corrects || error_ > largest_error;
+  refines_ = corrects_ || error_ > largest_error;
   if (!refines_) matrix_.close();
   return {};
 }
@@ -54,6 +55,9 @@ Result<void> RefinedFactor::measure(const SparseMatrix& upper, const Eigen::Vect
 // Corrects a guess until what a solve leaves is small; without a guess a solution is the first one.
 Result<Field> RefinedFactor::solve(const Field& right_hand_sides, std::optional<Field> guess) {
   constexpr int most_passes = 10;
+  if (!is_measured_) {
+    if (auto measured = measure(); !measured) return fail(measured.error());
+  }
   factor_.count_solve();
   if (!refines()) return factor_.solve(right_hand_sides);
   Result<Field> solution =
@@ -70,6 +74,11 @@ Result<Field> RefinedFactor::solve(const Field& right_hand_sides, std::optional<
     before = change;
   }
   return solution;
+}
+
+Result<Field> RefinedFactor::solve_roughly(const Field& right_hand_sides) {
+  factor_.count_solve();
+  return factor_.solve(right_hand_sides);
 }
 
 Result<Field> RefinedFactor::solve_next(const Field& right_hand_sides) {

@@ -18,14 +18,17 @@ class RefinedFactor {
 
   /// Factors the matrix with these shifts of its first rows. `has_same_pattern`: as
   /// `FactoredMatrix::factor`. `pressure` (#shifts): right-hand side of these rows by which the
-  /// error is measured; the peak of a solution is theirs. `corrects`: solutions are corrected in
-  /// any case. Errors: those of `FactoredMatrix`.
+  /// first solve measures the error; the peak of a solution is theirs. `corrects`: solutions are
+  /// corrected in any case. Errors: those of `FactoredMatrix`.
   Result<void> factor(const Eigen::VectorXd& shifts, bool has_same_pattern,
                       const Eigen::VectorXd& pressure, bool corrects);
 
   /// Solves for three right-hand sides (#rows x 3). A good guess saves work if solutions are
-  /// corrected. Requires: `factor` succeeded last.
+  /// corrected. Requires: `factor` succeeded last. Errors: those of the matrix's `open` too.
   Result<Field> solve(const Field& right_hand_sides, std::optional<Field> guess = {});
+
+  /// The same, never corrected.
+  Result<Field> solve_roughly(const Field& right_hand_sides);
 
   /// Solves for the steps of an interval, one after another: guesses from the last two.
   void begin_steps() { last_ = before_ = std::nullopt; }
@@ -41,14 +44,13 @@ class RefinedFactor {
   double peak(const Field& solution) const {
     return solution.topRows(shifts_.size()).cwiseAbs().maxCoeff();
   }
-  Result<void> measure(const SparseMatrix& upper, const Eigen::VectorXd& pressure,
-                       bool corrects);
+  Result<void> measure();
 
   PlateMatrix& matrix_;
   StopRequest should_stop_;
   FactoredMatrix factor_;
-  Eigen::VectorXd shifts_;
-  bool refines_ = false;
+  Eigen::VectorXd shifts_, pressure_;
+  bool corrects_ = false, is_measured_ = false, refines_ = false;
   double error_ = 0;                    // of a solution, as a part of its peak, if it is corrected
   std::optional<Field> last_, before_;  // the solutions of the last two steps, if corrected
 };

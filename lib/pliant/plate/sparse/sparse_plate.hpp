@@ -35,6 +35,9 @@ class SparsePlate {
   /// Solves with what is prepared. Errors: OutOfMemory; Interrupted.
   Result<Field> solve(const Field& forces) { return factor_.solve(forces); }
 
+  /// The same; rounding is not corrected.
+  Result<Field> solve_roughly(const Field& forces) { return factor_.solve_roughly(forces); }
+
   /// Advances the unknowns that move, under forces that change evenly if the steps are exact, and
   /// otherwise stay as they are last; how many steps were gone. Exact ones ask nobody. Requires:
   /// `prepare` for these dynamics and steps. Errors: those of the solves; Interrupted.

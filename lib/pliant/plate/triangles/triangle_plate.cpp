@@ -157,12 +157,13 @@ Field TrianglePlate::held_forces(const EdgeTangents& slopes, const Field& displa
   return forces;
 }
 
-Result<Field> TrianglePlate::solve(const Field& forces) {
+Result<Field> TrianglePlate::solve(const Field& forces, Accuracy accuracy) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(forces.rows() == points);
   Field right_hand_sides = Field::Zero(reduced_.count, 3);
   right_hand_sides.topRows(points) = forces;
-  auto solution = plate_.solve(right_hand_sides);
+  auto solution = accuracy == Accuracy::Refined ? plate_.solve(right_hand_sides)
+                                                : plate_.solve_roughly(right_hand_sides);
   if (!solution) return solution;
   return Field(solution->topRows(points));
 }

@@ -31,6 +31,9 @@ struct TriangleProblem : PlateInterval {
 /// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
 class TrianglePlate : private PlateAssembly {
  public:
+  /// Whether rounding of a solution is corrected where it matters.
+  enum class Accuracy { Rough, Refined };
+
   /// Requires: the first #masses points are free. `choice` is one of the factors. `factors` null:
   /// the material is even.
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
@@ -42,13 +45,13 @@ class TrianglePlate : private PlateAssembly {
 
   /// Solves for forces on the points with a mass (#masses x 3) on a plate whose held points and
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
-  Result<Field> solve(const Field& forces);
+  Result<Field> solve(const Field& forces, Accuracy accuracy = Accuracy::Refined);
 
   /// Advances as `advance_in_steps`, or exactly; with a law as `advance_plastic`, which is not for
   /// exact steps. What is held keeps its displacement. Errors: those of `prepare`; SolverFailed if
   /// a step does not settle; Interrupted.
   Result<PlateState> advance(const TriangleProblem& problem, const TimeSteps& steps,
-                                PlateState state);
+                             PlateState state);
 
   /// K: the upper triangle of what is factored, without unknowns that belong to one block of cells.
   /// Errors: OutOfMemory; Interrupted.
