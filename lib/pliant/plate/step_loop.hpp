@@ -26,7 +26,7 @@ using StepFilter = std::function<bool(const Field& solution)>;
 /// before every step. Errors: those of `solve`; Interrupted. Internal to plate.
 template <class Solve>
 Result<int> run_steps(const RunContext& context, const TimeSteps& steps, Motion& motion,
-                      const Solve& solve, const StepFilter& accepts) {
+                      const Solve& solve, const StepFilter& accepts = {}) {
   Field& w = motion.displacement;
   Field& v = motion.velocity;
   const double dt = steps.solved_length();
@@ -47,8 +47,8 @@ Result<int> run_steps(const RunContext& context, const TimeSteps& steps, Motion&
   return steps.count;
 }
 
-/// The state of a problem after go(motion, accepts) has gone with its interior nodes, as `run_steps`
-/// does; its watch is asked.
+/// The state of a problem after go(motion, accepts) has gone with its interior nodes, as
+/// `run_steps` does; its watch is asked.
 template <class Go>
 Result<PlateState> with_motion(const PlateProblem& problem, const TimeSteps& steps,
                                PlateState state, const Go& go) {
@@ -58,9 +58,8 @@ Result<PlateState> with_motion(const PlateProblem& problem, const TimeSteps& ste
   if (problem.watch) {
     accepts = [&](const Field& solution) {
       const Field& w = motion.displacement;
-      return (*problem.watch)(
-          with_interior(outline, state.displacement,
-                        steps.are_reflected() ? Field(2 * solution - w) : solution));
+      return (*problem.watch)(with_interior(
+          outline, state.displacement, steps.are_reflected() ? Field(2 * solution - w) : solution));
     };
   }
   const Result<int> gone = go(motion, accepts);

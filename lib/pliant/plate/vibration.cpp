@@ -184,8 +184,7 @@ Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,
   // Q^T M inverse(K) M Q = T is tridiagonal; the first column of Q is the shape's direction. Each
   // new direction is orthogonalised twice against all before it, so that rounding does not bring
   // one back.
-  constexpr Eigen::Index most = 24;
-  const Eigen::Index size = std::min<Eigen::Index>(most, shape.size());
+  const Eigen::Index size = std::min(most_excited, shape.size());
   Eigen::MatrixXd basis(shape.size(), size);
   Eigen::MatrixXd projected = Eigen::MatrixXd::Zero(size, size);
   const double length = std::sqrt(dot(shape, shape));
@@ -208,13 +207,18 @@ Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,
     projected(count, count - 1) = projected(count - 1, count) = rest;
     basis.col(count) = next / rest;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(projected.topLeftCorner(count, count));
+  return excited_modes(projected.topLeftCorner(count, count), basis.row(node).head(count));
+}
+
+std::vector<ExcitedMode> excited_modes(const Eigen::MatrixXd& projected,
+                                       const Eigen::RowVectorXd& at_node) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(projected);
   std::vector<ExcitedMode> excited;
-  for (Eigen::Index k = count - 1; k >= 0; --k) {
+  for (Eigen::Index k = at_node.size() - 1; k >= 0; --k) {
     const double inverse = modes.eigenvalues()(k);
     if (!(inverse > 0)) continue;  // rounding error of a very fast mode
-    const double at_node = basis.row(node).head(count).dot(modes.eigenvectors().col(k));
-    excited.push_back({1 / inverse, length * at_node * modes.eigenvectors()(0, k) / shape(node)});
+    const auto mode = modes.eigenvectors().col(k);
+    excited.push_back({1 / inverse, at_node.dot(mode) * mode(0) / at_node(0)});
   }
   return excited;
 }

@@ -71,4 +71,12 @@ struct ExcitedMode {
 Result<std::vector<ExcitedMode>> excited_modes(const VibratingPlate& plate,
                                                const Eigen::VectorXd& shape, Eigen::Index node);
 
+/// The same from the inverse of K in the space of Lanczos' vectors, of which the first one has the
+/// direction of the shape, and what they are at the node. Requires: at_node(0) is not 0.
+std::vector<ExcitedMode> excited_modes(const Eigen::MatrixXd& projected,
+                                       const Eigen::RowVectorXd& at_node);
+
+/// Lanczos' vectors for the modes of a shape.
+inline constexpr Eigen::Index most_excited = 24;
+
 }  // namespace pliant
