@@ -118,7 +118,7 @@ TEST_CASE("a single force moves what it moves among others of magnitude 0", "[fe
     };
     const auto plan = body.look(inputs, true);
     REQUIRE(plan);
-    const SingleForces single(inputs, body.selecting(inputs, *plan));
+    const SingleForces single(inputs, body.selecting(inputs, **plan));
     bool is_moved = false;
     for (std::size_t k = 0; k < s.forces.size(); ++k) {
       BodyInputs among = inputs;

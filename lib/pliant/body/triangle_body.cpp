@@ -119,10 +119,10 @@ SolverCounts TriangleBody::solver_counts() const {
   return counts;
 }
 
-Result<StepPlan> TriangleBody::look(const BodyInputs& inputs) const {
-  StepPlan next = plan_;  // patches that stay need not be cut out again
-  if (auto planned = plan(inputs, next); !planned) return fail(planned.error());
-  return next;
+// Patches that stay need not be cut out again.
+Result<StepPlan> TriangleBody::look_again(const BodyInputs& inputs, StepPlan earlier) const {
+  if (auto planned = plan(inputs, earlier); !planned) return fail(planned.error());
+  return earlier;
 }
 
 Result<void> TriangleBody::plan(const BodyInputs& inputs, StepPlan& plan) const {

@@ -44,7 +44,10 @@ class TriangleBody final : public ElasticBody {
                const BodySettings& settings, SolverChoice solver, RunContext context,
                std::shared_ptr<const NodeFactors> factors);
 
-  Result<StepPlan> look(const BodyInputs& inputs) const override;
+  Result<StepPlan> look(const BodyInputs& inputs) const override {
+    return look_again(inputs, plan_);
+  }
+  Result<StepPlan> look_again(const BodyInputs& inputs, StepPlan earlier) const override;
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
     return plan.surface->forces[force].push;
   }

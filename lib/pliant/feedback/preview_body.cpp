@@ -58,13 +58,20 @@ Result<void> PreviewBody::check_faults() const {
   return fail(ErrorCode::NotFinite, std::move(fault));
 }
 
-Result<StepPlan> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
+Result<const StepPlan*> PreviewBody::look(const BodyInputs& inputs, bool is_plain) {
   PLIANT_EXPECTS(real_ != nullptr);
   if (context_.is_stopped()) return interrupted();
   body(is_plain).reset();
-  auto plan = body(is_plain).look(inputs);
-  if (auto sound = check_faults(); !sound) return fail(sound.error());
-  return plan;
+  if (auto planned = plan(inputs, is_plain); !planned) return fail(planned.error());
+  return &plan_;
+}
+
+Result<void> PreviewBody::plan(const BodyInputs& inputs, bool is_plain) {
+  auto next = body(is_plain).look_again(inputs, std::exchange(plan_, {}));
+  if (auto sound = check_faults(); !sound) return sound;
+  if (!next) return fail(next.error());
+  plan_ = *std::move(next);
+  return {};
 }
 
 Result<void> PreviewBody::settle(BodyInputs inputs, bool is_plain) {
@@ -97,10 +104,8 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
                                  [](const SampledForce& force) { return force.magnitude == 0; });
   if (is_at_rest_) return 0.0;
   if (is_still) {
-    const auto plan = body(is_plain_).look(inputs);
-    if (auto sound = check_faults(); !sound) return fail(sound.error());
-    if (!plan) return fail(plan.error());
-    if (has_no_load(*plan)) {
+    if (auto planned = plan(inputs, is_plain_); !planned) return fail(planned.error());
+    if (has_no_load(plan_)) {
       is_at_rest_ = true;
       return least_cost();
     }

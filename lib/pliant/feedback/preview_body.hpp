@@ -69,8 +69,8 @@ class PreviewBody {
   /// Checks that custom forces have returned only valid values so far. Errors: NotFinite.
   Result<void> check_faults() const;
 
-  /// The plan of a step from rest.
-  Result<StepPlan> look(const BodyInputs& inputs, bool is_plain);
+  /// The plan of a step from rest, until the next call.
+  Result<const StepPlan*> look(const BodyInputs& inputs, bool is_plain);
 
   /// Brings it to rest under the inputs, starting from its rest shape: one step without density and
   /// damping.
@@ -130,6 +130,7 @@ class PreviewBody {
  private:
   Body& body(bool is_plain) { return is_plain && plain_ ? *plain_ : *real_; }
   Result<std::unique_ptr<Body>> make(Reference reference) const;
+  Result<void> plan(const BodyInputs& inputs, bool is_plain);
   std::vector<std::size_t> deepest_at_nodes(const BodyInputs& inputs,
                                             const LevelSet& level_set) const;
   Field displacements(const Box& box) const;
@@ -158,6 +159,7 @@ class PreviewBody {
   MemoryShare share_;
   std::unique_ptr<Body> real_;   // as in the scene
   std::unique_ptr<Body> plain_;  // if `real_` is not elastic about its rest shape
+  StepPlan plan_;                // made last; one body alone is of triangles
   const Body* current_ = nullptr;
   bool is_plain_ = true;     // whether the animation is of the plain body
   bool is_at_rest_ = false;  // nothing has moved yet

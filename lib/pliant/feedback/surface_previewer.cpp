@@ -274,20 +274,50 @@ std::vector<int> SurfacePreviewer::strongest_of(const PreviewCase& one,
   return found;
 }
 
+// The peak under loads that are those of the last settled frame times a factor; null: they are not.
+std::optional<double> SurfacePreviewer::peak_in_proportion(const BodyInputs& inputs,
+                                                           const StepPlan& step) const {
+  if (!step.surface || !settled_ || !(settled_->stiffness == inputs.stiffness) ||
+      settled_->poisson != inputs.poisson || settled_->linear != inputs.transform.linear ||
+      !(settled_->level_set == step.surface->level_set))
+    return {};
+  constexpr double rounding = 1e-12;
+  double square = 0, product = 0, size = 0, rest = 0;
+  const std::vector<Field>& now = step.surface->loads;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    square += settled_->loads[k].squaredNorm();
+    product += settled_->loads[k].cwiseProduct(now[k]).sum();
+  }
+  const double factor = product / square;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    size += now[k].squaredNorm();
+    rest += (now[k] - factor * settled_->loads[k]).squaredNorm();
+  }
+  if (!(rest <= rounding * rounding * size)) return {};
+  return std::abs(factor) * settled_->peak;
+}
+
 // Sets the case's frame to this one if its effect is the greatest so far.
 Result<void> SurfacePreviewer::look_at(PreviewCase& one, int frame) {
   Preview& preview = one.preview;
   const BodyInputs inputs = inputs_of(one, frame);
   const bool is_plain = preview.of != Preview::Of::All;
-  const auto step = body_.look(inputs, is_plain);
-  if (!step) return fail(step.error());
-  if (!step->selects()) return {};
+  const auto looked = body_.look(inputs, is_plain);
+  if (!looked) return fail(looked.error());
+  const StepPlan& step = **looked;
+  if (!step.selects()) return {};
   double peak = 0;
-  const int unknowns = step->unknown_count();
-  const bool is_still = answers_in_proportion(one) && has_no_load(*step);
-  if (unknowns > 0 && unknowns <= most_previewed_unknowns && step->is_held() && !is_still) {
-    if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
-    peak = body_.peak(inputs.transform).size;
+  const int unknowns = step.unknown_count();
+  const bool is_still = answers_in_proportion(one) && has_no_load(step);
+  if (unknowns > 0 && unknowns <= most_previewed_unknowns && step.is_held() && !is_still) {
+    const auto known = answers_in_proportion(one) ? peak_in_proportion(inputs, step) : std::nullopt;
+    if (!known) {
+      if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
+      peak = body_.peak(inputs.transform).size;
+      if (step.surface) settled_.emplace(inputs, *step.surface, peak);
+    } else {
+      peak = *known;
+    }
   }
   if (!preview.frame || peak > preview.static_peak) {
     preview.frame = frame;
@@ -302,25 +332,26 @@ Result<void> SurfacePreviewer::tell(PreviewCase& one, const PreviewCase* before)
   Preview& preview = one.preview;
   const BodyInputs inputs = inputs_of(one, *preview.frame);
   const bool is_plain = preview.of != Preview::Of::All;
-  auto step = body_.look(inputs, is_plain);
-  if (!step) return fail(step.error());
+  const auto looked = body_.look(inputs, is_plain);
+  if (!looked) return fail(looked.error());
+  const StepPlan& step = **looked;
   if (preview.of == Preview::Of::Force) {
     preview.magnitude = scene_.forces[preview.index].magnitude.at(*preview.frame)[0];
   }
-  preview.selected = step->selection.box();
+  preview.selected = step.selection.box();
   std::vector<Box> room;
   preview.is_apart = !is_plain && surface_.solver.combine == Combine::Box &&
                      !scene_.origin.gives(surface_.name, "combine") &&
-                     falls_apart(step->selection, room);
-  const int unknowns = step->unknown_count();
+                     falls_apart(step.selection, room);
+  const int unknowns = step.unknown_count();
   preview.is_solvable = unknowns > 0;
-  preview.is_held = step->is_held();
+  preview.is_held = step.is_held();
   preview.is_solved = preview.is_solvable && preview.is_held && unknowns <= most_previewed_unknowns;
   if (preview.is_solved) {
     if (auto settled = body_.settle(inputs, is_plain); !settled) return fail(settled.error());
     preview.static_peak = body_.peak(inputs.transform).size;
   }
-  preview.regions = regions_of(*step);
+  preview.regions = regions_of(step);
   for (std::size_t k = 0; k < preview.regions.size(); ++k) {
     RegionPreview& region = preview.regions[k];
     preview.counts = preview.counts + region.counts;
@@ -333,8 +364,8 @@ Result<void> SurfacePreviewer::tell(PreviewCase& one, const PreviewCase* before)
         before && k < before->motions.size() && before->motions[k] ? &*before->motions[k] : nullptr;
     report("finding the vibrations of", static_cast<int>(k),
            static_cast<int>(preview.regions.size()));
-    auto moving = is_free ? body_.unheld_vibration(inputs, *step, k, std::move(region), known)
-                          : body_.vibrations(inputs, *step, k, std::move(region), known);
+    auto moving = is_free ? body_.unheld_vibration(inputs, step, k, std::move(region), known)
+                          : body_.vibrations(inputs, step, k, std::move(region), known);
     if (!moving) return fail(moving.error());
     region = std::move(moving->preview);
     if (known) region.solver_memory = before->preview.regions[k].solver_memory;
@@ -343,7 +374,7 @@ Result<void> SurfacePreviewer::tell(PreviewCase& one, const PreviewCase* before)
   if (before) preview.shares = before->preview.shares;
   const bool has_shares = preview.is_solved && preview.of != Preview::Of::Force && !before;
   if (!has_shares || depth_ == PreviewDepth::Slowest) return {};
-  return share(one, inputs, *step);
+  return share(one, inputs, step);
 }
 
 // Computes the share of each force in the peak. Requires: the body is settled under all of them;

@@ -76,10 +76,29 @@ class SurfacePreviewer {
   bool is_hidden_by_rounding(double peak) const;
 
  private:
+  // A frame under whose loads a surface of triangles was settled.
+  struct Settled {
+    Settled(const BodyInputs& inputs, const TriangleSelection& selection, double size)
+        : stiffness(inputs.stiffness),
+          poisson(inputs.poisson),
+          linear(inputs.transform.linear),
+          level_set(selection.level_set),
+          loads(selection.loads),
+          peak(size) {}
+
+    Stiffness stiffness;
+    double poisson;
+    Matrix3d linear;
+    LevelSet level_set;
+    std::vector<Field> loads;
+    double peak;
+  };
+
   BodyInputs inputs_of(const PreviewCase& one, int frame);
   std::vector<int> frames_of(PreviewCase& one);
   std::vector<int> strongest_of(const PreviewCase& one, const std::vector<int>& frames) const;
   Result<void> look_at(PreviewCase& one, int frame);
+  std::optional<double> peak_in_proportion(const BodyInputs& inputs, const StepPlan& step) const;
   Result<void> tell(PreviewCase& one, const PreviewCase* before = nullptr);
   Result<void> share(PreviewCase& one, const BodyInputs& inputs, const StepPlan& step);
   Result<bool> begin_cycle(PreviewCase& one);
@@ -92,7 +111,8 @@ class SurfacePreviewer {
   PreviewDepth depth_;
   ProgressReport progressed_;
   PreviewBody body_;
-  int first_, last_;  // frames whose solve affects the animation
+  std::optional<Settled> settled_;  // the last one
+  int first_, last_;                // frames whose solve affects the animation
   double most_frames_;
 };
 
