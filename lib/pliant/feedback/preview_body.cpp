@@ -23,7 +23,8 @@ PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double 
       frame_seconds_(frame_seconds),
       with_swings_(with_swings),
       context_(std::move(context)),
-      share_(context_.memory) {}
+      share_(context_.memory),
+      response_(shape_, surface_, context_) {}
 
 Result<std::unique_ptr<Body>> PreviewBody::make(Reference reference) const {
   BodySettings settings = body_settings(surface_, shape_.grid.has_value());
@@ -117,6 +118,13 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   // Exact ones are divided further.
   const int solves = plan.steps.count * (plan.steps.are_exact() ? 24 : 1);
   return least_cost() + static_cast<double>(plan.unknown_count()) * solves;
+}
+
+Result<std::optional<std::vector<double>>> PreviewBody::response_peaks(
+    std::span<const FrameToPlay> frames) {
+  auto peaks = response_.peaks(body(is_plain_), plan_, frames);
+  if (auto sound = check_faults(); !sound) return fail(sound.error());
+  return peaks;
 }
 
 Result<void> PreviewBody::begin_cycle(int frames, const std::function<Result<void>(int)>& advance) {

@@ -11,6 +11,7 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/feedback/region_motion.hpp"
+#include "pliant/feedback/response_player.hpp"
 #include "pliant/plate/vibration.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/scene.hpp"
@@ -85,6 +86,11 @@ class PreviewBody {
   /// Advances it by a frame. Returns the cost, in steps of nodes.
   Result<double> step(BodyInputs inputs);
 
+  /// The peaks after frames from rest on, as `ResponsePlayer` finds them. Requires: the animation
+  /// is in proportion to its loads.
+  Result<std::optional<std::vector<double>>> response_peaks(std::span<const FrameToPlay> frames);
+  double response_cost() const { return response_.cost(); }
+
   /// Puts the animation that begins at the beginning of its cycle, found as a run finds it.
   /// `advance` steps it over a frame of the round. Errors: those of `pliant::find_cycle`.
   Result<void> begin_cycle(int frames, const std::function<Result<void>(int frame)>& advance);
@@ -118,7 +124,7 @@ class PreviewBody {
   /// and damping are others than when it was found; null: it is found. Requires: it is settled
   /// under `inputs`; `region.is_solvable`.
   Result<MovingRegion> vibrations(const BodyInputs& inputs, const StepPlan& plan, std::size_t k,
-                                  RegionPreview region, const RegionMotion* known = nullptr) const;
+                                  RegionPreview region, const RegionMotion* known = nullptr);
 
   /// The frequency of the slowest vibration and its damping ratio, of region or patch `k` of a plan
   /// that nothing holds. `known` as for `vibrations`. Requires: `region.is_solvable`; inputs with
@@ -139,7 +145,7 @@ class PreviewBody {
                                         const RegionMotion* known) const;
   Result<MovingRegion> triangle_vibrations(const BodyInputs& inputs,
                                            const TriangleSelection& selection, std::size_t k,
-                                           RegionPreview region, const RegionMotion* known) const;
+                                           RegionPreview region, const RegionMotion* known);
   MovingRegion moving_as(const RegionMotion& motion, const BodyInputs& inputs,
                          RegionPreview region) const;
   PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;
@@ -147,7 +153,7 @@ class PreviewBody {
                    RegionPreview& region) const;
   Result<MovingRegion> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,
                                       double drag, const Field& ways, double least,
-                                      RegionPreview region) const;
+                                      RegionPreview region, ResponseSpace* space = nullptr) const;
   RegionMotion motion_of(const BodyInputs& inputs, std::vector<ExcitedMode> modes, double slowest,
                          double drag) const;
 
@@ -164,6 +170,7 @@ class PreviewBody {
   bool is_plain_ = true;     // whether the animation is of the plain body
   bool is_at_rest_ = false;  // nothing has moved yet
   BodyState cycle_;          // at the beginning of the cycle
+  ResponsePlayer response_;
   std::shared_ptr<ForceFaults> faults_ = std::make_shared<ForceFaults>();
 };
 

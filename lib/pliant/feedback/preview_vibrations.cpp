@@ -43,7 +43,7 @@ Dynamics felt_by(const RegionMotion& motion, const BodyInputs& inputs) {
 
 Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
                                              std::size_t k, RegionPreview region,
-                                             const RegionMotion* known) const {
+                                             const RegionMotion* known) {
   if (plan.surface) return triangle_vibrations(inputs, *plan.surface, k, std::move(region), known);
   return patch_vibrations(inputs, std::move(region), known);
 }
@@ -133,7 +133,7 @@ Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs, Reg
 Result<MovingRegion> PreviewBody::triangle_vibrations(const BodyInputs& inputs,
                                                       const TriangleSelection& selection,
                                                       std::size_t k, RegionPreview region,
-                                                      const RegionMotion* known) const {
+                                                      const RegionMotion* known) {
   const TrianglePatch& patch = selection.patches[k];
   std::vector<int> nodes;
   for (int n = 0; n < patch.free_nodes; ++n) {
@@ -145,25 +145,41 @@ Result<MovingRegion> PreviewBody::triangle_vibrations(const BodyInputs& inputs,
   if (known) return moving_as(*known, inputs, std::move(region));
   if (patch.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
-  TrianglePlate triangles(patch.cells, patch.masses, available_solvers().front(), context_,
-                          factors_of(*shape_.surface, selection.level_set, patch, factors));
   const Border border = body_settings(surface_, false).border;
   const Bending bending = bending_of(inputs, shape_.surface->unit, border);
+  // Shapes that are found for an animation of the same load are those of the vibrations too.
+  const bool is_elastic = !surface_.material.yield && is_plain(surface_);
+  auto* const responding = is_elastic ? response_.patch_of(inputs, selection, k) : nullptr;
+  std::unique_ptr<TrianglePlate> own;
+  if (!responding) {
+    own = std::make_unique<TrianglePlate>(
+        patch.cells, patch.masses, available_solvers().front(), context_,
+        factors_of(*shape_.surface, selection.level_set, patch, factors));
+  }
+  TrianglePlate& triangles = own ? *own : *responding->plate;
   const auto plate = vibrating(triangles, bending);
   if (!plate) return fail(plate.error());
+  ResponseSpace* space = nullptr;
+  if (responding && responding->patterns.cols() == 1 && with_swings_) {
+    const auto made = response_.space_of(*responding);
+    if (!made) return fail(made.error());
+    space = *made;
+  }
   const double drag = factors ? drag_of(maps_of(*factors, nodes), ways) : 1;
   constexpr double none = std::numeric_limits<double>::infinity();
-  auto moving = add_vibrations(inputs, *plate, drag, ways, none, std::move(region));
+  auto moving = add_vibrations(inputs, *plate, drag, ways, none, std::move(region), space);
   if (moving) moving->preview.solver_memory = triangles.memory();
+  if (moving && moving->motion && responding) responding->lambda = moving->motion->slowest;
   return moving;
 }
 
 // `drag`: of the map of damping in the shape of `ways`, the displacement of each unknown, object
-// space. `least`: the smallest eigenvalue of other plates of the region, if that matters.
+// space. `least`: the smallest eigenvalue of other plates of the region, if that matters. `space`:
+// of the load; null: it is not known.
 Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
                                                  const VibratingPlate& plate, double drag,
                                                  const Field& ways, double least,
-                                                 RegionPreview region) const {
+                                                 RegionPreview region, ResponseSpace* space) const {
   if (!(plate.masses.sum() > 0)) return MovingRegion{std::move(region)};  // a map: no weight
   std::vector<ExcitedMode> modes;
   const Field world = vectors_to_world(inputs.transform, ways);
@@ -171,7 +187,7 @@ Result<MovingRegion> PreviewBody::add_vibrations(const BodyInputs& inputs,
   if (size > 0 && with_swings_) {
     const Eigen::VectorXd along =
         ways * (inputs.transform.linear.transpose() * (world.row(node).transpose() / size));
-    auto excited = excited_modes(plate, along, node);
+    auto excited = space ? space->excited_modes(node) : excited_modes(plate, along, node);
     if (!excited) return fail(excited.error());
     modes = *std::move(excited);
   }

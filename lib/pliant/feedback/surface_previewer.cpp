@@ -166,6 +166,15 @@ Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left, double
     if (!*begun) return {};
     played = {body_.shown_peak(surface_.transform.at(first_)), first_};
   }
+  if (!is_loop && plays_in_proportion(one)) {
+    const auto responded = play_response(one);
+    if (!responded) return fail(responded.error());
+    if (*responded) {
+      nodes_left -= body_.response_cost();
+      one.preview.played = **responded;
+      return {};
+    }
+  }
   for (int frame = first_; frame < scene_.end && played.peak <= until; ++frame) {
     report("playing", frame - first_, scene_.end - first_);
     if (is_loop && begins_cycle(scene_, surface_, frame + 1)) {
@@ -182,6 +191,27 @@ Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left, double
   }
   one.preview.played = played;
   return {};
+}
+
+// The peak of an animation in proportion to its loads, without its steps; null: they are needed.
+Result<std::optional<PlayedPeak>> SurfacePreviewer::play_response(PreviewCase& one) {
+  using Played = std::optional<PlayedPeak>;
+  std::vector<FrameToPlay> frames;
+  for (int frame = first_; frame < scene_.end; ++frame) {
+    if (!is_solved_at(scene_, surface_, frame)) return Played();
+    frames.push_back({inputs_of(one, frame), surface_.transform.at(frame + 1)});
+  }
+  const auto peaks = body_.response_peaks(frames);
+  if (!peaks && peaks.error().code == ErrorCode::Interrupted) return fail(peaks.error());
+  if (!peaks) body_.faults()->clear();  // the steps tell at which frame it is
+  if (!peaks || !*peaks) return Played();
+  PlayedPeak played{0, scene_.start};
+  for (int frame = std::max(first_, scene_.start - 1); frame < scene_.end; ++frame) {
+    const double peak = (**peaks)[static_cast<std::size_t>(frame - first_)];
+    if (peak > played.peak) played = {peak, frame + 1};
+  }
+  if (is_hidden_by_rounding(played.peak)) return Played();
+  return Played(played);
 }
 
 // Puts the body at the beginning of its cycle; false: it has none.

@@ -101,6 +101,7 @@ class SurfacePreviewer {
   std::optional<double> peak_in_proportion(const BodyInputs& inputs, const StepPlan& step) const;
   Result<void> tell(PreviewCase& one, const PreviewCase* before = nullptr);
   Result<void> share(PreviewCase& one, const BodyInputs& inputs, const StepPlan& step);
+  Result<std::optional<PlayedPeak>> play_response(PreviewCase& one);
   Result<bool> begin_cycle(PreviewCase& one);
   tl::unexpected<Error> located(Error error, int frame) const;
   void report(std::string_view work, int done, int count) const;
