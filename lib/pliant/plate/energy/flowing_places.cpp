@@ -122,6 +122,7 @@ void FlowingPlaces::for_each_span(const F& f) const {
 }
 
 void FlowingPlaces::take_from(const Field& all, Numbers& own) const {
+  own.resize(components_.size() * pitch());
   for_each_span([&](std::size_t at, int column, int first, int count) {
     std::copy_n(all.col(column).data() + first, count, own.data() + at);
   });

@@ -36,25 +36,33 @@ class Secants {
 
   void clear() { secants_.clear(); }
 
-  // A way that was gone, with A times it, and what it changed of the gradient.
-  void learn(Numbers way, Numbers product, Numbers change) {
+  // A way that was gone, with A times it, and what it changed of the gradient. Leaves other numbers
+  // there, as many or none.
+  void learn(Numbers& way, Numbers& product, Numbers& change) {
     const double curvature = dot(kernels_, way, change);
     // Rounding may leave nothing to learn.
     if (!(curvature > 1e-4 * dot(kernels_, way, product))) return;
-    if (secants_.size() == most_) secants_.pop_front();
-    secants_.push_back({std::move(way), std::move(product), std::move(change), curvature});
+    Secant next;
+    if (secants_.size() == most_) {
+      next = std::move(secants_.front());
+      secants_.pop_front();
+    }
+    next.way.swap(way);
+    next.product.swap(product);
+    next.change.swap(change);
+    next.curvature = curvature;
+    secants_.push_back(std::move(next));
   }
 
-  // A way down for a gradient: first what A has to be solved for, then the way and A times it for
-  // that solution.
-  Numbers to_solve(Numbers gradient) {
+  // A way down for a gradient: first what A has to be solved for, in its place, then the way and A
+  // times it for that solution.
+  void to_solve(Numbers& gradient) {
     parts_.resize(secants_.size());
     for (std::size_t k = secants_.size(); k-- > 0;) {
       const Secant& one = secants_[k];
       parts_[k] = dot(kernels_, one.way, gradient) / one.curvature;
       add(kernels_, gradient, -parts_[k], one.change);
     }
-    return gradient;
   }
 
   void finish(Numbers& way, Numbers& product) const {
@@ -69,7 +77,7 @@ class Secants {
  private:
   struct Secant {
     Numbers way, product, change;
-    double curvature;  // way . change
+    double curvature = 0;  // way . change
   };
 
   const PlateKernels& kernels_;
@@ -208,37 +216,36 @@ class EquilibriumSteps final : public PlasticSteps {
     const Peaks peaks = peaks_of(x_, moving);
     places_->take_from(x_, way_);
     places_->go_to(way_, flowed_);
-    Numbers gradient = forces_;
-    add(kernels_, gradient, -1, flowed_);
+    gradient_ = forces_;
+    add(kernels_, gradient_, -1, flowed_);
     double shortest = std::numeric_limits<double>::infinity();
     int since = 0;  // turns since it was shortest
-    for (int turn = 0; turn < most_turns && !are_all_zero(gradient); ++turn) {
-      Numbers product = secants_.to_solve(gradient);
-      Numbers way = places_->zero();
-      if (auto solved = solve_on_places(product, way); !solved) return solved;
-      secants_.finish(way, product);
+    for (int turn = 0; turn < most_turns && !are_all_zero(gradient_); ++turn) {
+      product_ = gradient_;
+      secants_.to_solve(product_);
+      if (auto solved = solve_on_places(product_, way_); !solved) return solved;
+      secants_.finish(way_, product_);
       // The energy falls against the way.
-      const double start = dot(kernels_, way, gradient);
-      double part = -start / (dot(kernels_, way, product) - places_->look_along(way));
-      Numbers left;
+      const double start = dot(kernels_, way_, gradient_);
+      double part = -start / (dot(kernels_, way_, product_) - places_->look_along(way_));
       for (int tries = 1;; ++tries) {
         if (context_.is_stopped()) return interrupted();
         places_->flow_after(part, flowed_);
-        left = product;
-        combine(1, forces_, part, left);
-        add(kernels_, left, -1, flowed_);
+        left_ = product_;
+        combine(1, forces_, part, left_);
+        add(kernels_, left_, -1, flowed_);
         // Its slope along the way is monotone: less of the way if it grows again.
-        const double slope = -dot(kernels_, way, left);
+        const double slope = -dot(kernels_, way_, left_);
         if (!(slope > 0.5 * std::abs(start)) || tries == 30) break;
         part *= std::abs(start) / (std::abs(start) + slope);
       }
       places_->go();
-      add(kernels_, forces_, part, product);
-      const double length = std::abs(part) * longest(way, moving, peaks);
+      add(kernels_, forces_, part, product_);
+      const double length = std::abs(part) * longest(way_, moving, peaks);
       // Of all of the way.
-      combine(1 / part, left, -1 / part, gradient);
-      secants_.learn(std::move(way), std::move(product), std::move(gradient));
-      gradient = std::move(left);
+      combine(1 / part, left_, -1 / part, gradient_);
+      secants_.learn(way_, product_, gradient_);
+      gradient_.swap(left_);
       // Rounding may let it become no shorter; or a number is not finite.
       since = length < 0.5 * shortest ? 0 : since + 1;
       shortest = std::min(shortest, length);
@@ -247,7 +254,7 @@ class EquilibriumSteps final : public PlasticSteps {
         return {};
       }
     }
-    if (!are_all_zero(gradient)) return fail(not_in_equilibrium(moving, most_turns));
+    if (!are_all_zero(gradient_)) return fail(not_in_equilibrium(moving, most_turns));
     forces_ = flowed_;
     return {};
   }
@@ -304,7 +311,7 @@ class EquilibriumSteps final : public PlasticSteps {
   Secants secants_;
   Numbers guess_;            // the forces with which the next step begins
   Numbers forces_, flowed_;  // that make x_, and those by what grows there
-  Numbers way_;
+  Numbers way_, product_, gradient_, left_;
   Field sums_, x_;
   Field on_places_, solution_;  // 0 but while it is solved for; its solution
 };
