@@ -117,7 +117,7 @@ class EquilibriumSteps final : public PlasticSteps {
         shortest_way_(shortest_way(hardening)),
         steps_(steps),
         components_(std::move(components)),
-        secants_(kernels_, 4),
+        secants_(kernels_, 2),
         sums_(Field::Zero(terms_.known.rows(), 3)),
         x_(sums_) {
     if (!plastic.isZero(0)) terms_.known += plate_.forces_of(plastic);
