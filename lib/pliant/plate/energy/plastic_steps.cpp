@@ -90,7 +90,7 @@ class Secants {
 // (sqrt(condition) - 1)/2 of it, which is 1e-9 at most, and the solve that follows less.
 double shortest_way(double hardening) {
   const double h = std::max(hardening, 0.01);
-  return 1e-9 * std::min(1.0, 2 / (std::sqrt((1 + h) / h) + 1));
+  return 1e-9 * std::min(1.0, 2 / (std::sqrt((1 + h) / h) - 1));
 }
 
 bool are_all_zero(const Numbers& numbers) {
