@@ -134,7 +134,10 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   FlowingGrid flowing(solver, plate, outline, state.displacement);
   const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
                                       problem.law->hardening, steps, plate.components(), plastic);
-  if (is_expected) all->expect(motion.displacement + dt * motion.velocity, plastic);
+  if (is_expected) {
+    all->expect(motion.displacement + dt * motion.velocity,
+                motion.displacement + steps.count * dt * motion.velocity, plastic);
+  }
   auto flowed = all->step(motion, plastic);
   if (!flowed || (is_expected && !*flowed)) return flowed;
   auto ran = run_plastic_steps(*all, steps.count - first - 1, motion, plastic);

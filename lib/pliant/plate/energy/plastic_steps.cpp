@@ -123,8 +123,9 @@ class EquilibriumSteps final : public PlasticSteps {
     if (!plastic.isZero(0)) terms_.known += plate_.forces_of(plastic);
   }
 
-  void expect(const Field& x, const PlasticField& plastic) override {
-    watch_over(x, plastic, {});
+  void expect(const Field& x, const Field& end, const PlasticField& plastic) override {
+    constexpr double close = 0.95;
+    watch_over(close, x, plastic, plate_.places_over(close, end, plastic));
     places_->begin(plastic);
     places_->take_from(x, way_);
     places_->go_to(way_, guess_);
@@ -191,15 +192,16 @@ class EquilibriumSteps final : public PlasticSteps {
       return false;
     }
     const std::optional<FlowingPlaces> earlier = std::exchange(places_, std::nullopt);
-    watch_over(x_, from, earlier ? earlier->places() : std::vector<int>());
+    constexpr double close = 0.8;  // how it moves on is not known
+    watch_over(close, x_, from, earlier ? earlier->places() : std::vector<int>());
     places_->begin(from);
     forces_ = earlier ? places_->taken_over(*earlier, forces_) : places_->zero();
     return true;
   }
 
   // Those that are close to yielding too: they may soon.
-  void watch_over(const Field& x, const PlasticField& from, const std::vector<int>& others) {
-    constexpr double close = 0.8;
+  void watch_over(double close, const Field& x, const PlasticField& from,
+                  const std::vector<int>& others) {
     const std::vector<int> over = plate_.places_over(close, x, from);
     std::vector<int> places;
     std::set_union(over.begin(), over.end(), others.begin(), others.end(),

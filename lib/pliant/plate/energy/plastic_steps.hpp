@@ -58,8 +58,9 @@ class PlasticSteps {
  public:
   virtual ~PlasticSteps() = default;
 
-  /// Lets the next step begin with what flows at `x`, which is near its solution.
-  virtual void expect(const Field& x, const PlasticField& plastic) = 0;
+  /// Lets the next step begin with what flows at `x`, which is near its solution; the last one may
+  /// come near `end`.
+  virtual void expect(const Field& x, const Field& end, const PlasticField& plastic) = 0;
 
   /// One step; whether a place flowed in it. Errors: those of the plate; SolverFailed if the step
   /// does not settle; Interrupted.
