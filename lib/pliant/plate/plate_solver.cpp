@@ -54,7 +54,8 @@ class AutomaticPlateSolver final : public PlateSolver {
       past_counts_ = counts();
       solver_.reset();
       transforms_ = transforms;
-      solver_ = transforms ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
+      solver_ =
+          transforms ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
     }
     return *solver_;
   }
@@ -85,7 +86,7 @@ Result<PlateState> PlateSolver::advance(const PlateProblem& problem, const TimeS
 }
 
 Result<void> PlateSolver::solve_for(const std::vector<int>&, const Field& right_hand_sides,
-                                    Field& solution) {
+                                    std::span<const UnknownRun>, Field& solution) {
   auto solved = solve(right_hand_sides);
   if (!solved) return fail(solved.error());
   solution = *std::move(solved);

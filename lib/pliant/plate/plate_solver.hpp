@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,11 @@ struct StepTerms {
   Field known;            ///< #unknowns x 3: by the load, the rim and the tangents
   Eigen::VectorXd shift;  ///< of each unknown [1/uv^4]
   Eigen::VectorXd inertia;
+};
+
+/// Neighbouring unknowns.
+struct UnknownRun {
+  int first = 0, count = 0;
 };
 
 /// Solves plates: the interface between all that needs a solution and all that compute one. Every
@@ -42,9 +48,10 @@ class PlateSolver {
   virtual Result<Field> solve(const Field& right_hand_sides) = 0;
 
   /// Likewise for some of x, y and z; the other right-hand sides are 0. Reuses the solution, which
-  /// is as large, and may leave the others of its columns.
+  /// is as large, and may leave the others of its columns. If there are `runs`, the right-hand
+  /// sides are 0 outside, and the solution may be left there. Runs change no bit.
   virtual Result<void> solve_for(const std::vector<int>& components, const Field& right_hand_sides,
-                                 Field& solution);
+                                 std::span<const UnknownRun> runs, Field& solution);
 
   /// Advances a plate over an interval as `advance_in_steps` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.

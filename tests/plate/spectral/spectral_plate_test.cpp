@@ -1,6 +1,8 @@
 #include "pliant/plate/spectral/spectral_plate.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "pliant/core/memory_budget.hpp"
@@ -233,6 +235,51 @@ TEST_CASE("no bit depends on threads, on the width of vectors or on what was kep
   check(plain);
   REQUIRE(plain.prepare({unit_grid(rows, columns), {1, 2, 1}, 5}));
   check(plain);
+}
+
+TEST_CASE("a solution that is wanted at some nodes only has the bits of a whole one",
+          "[plate][spectral][threads]") {
+  const auto [columns, rows] =
+      GENERATE(std::pair{60, 61}, std::pair{131, 97}, std::pair{40, 102}, std::pair{9, 11});
+  const int count = GENERATE(1, 3, 40);
+  const Grid grid = unit_grid(columns, rows);
+  const int unknowns = unknown_count(grid);
+  const long width = columns - 2;
+  std::mt19937 random(static_cast<unsigned>(columns + count));
+  std::vector<UnknownRun> runs;
+  Field load = Field::Zero(unknowns, 3);
+  for (int k = 0; k < count; ++k) {
+    const int first = static_cast<int>(random() % static_cast<unsigned>(unknowns));
+    // Some longer than a row.
+    const int most = std::min(unknowns - first, static_cast<int>(random() % 3 == 0 ? 150 : 5));
+    runs.push_back({first, 1 + static_cast<int>(random() % static_cast<unsigned>(most))});
+    load.middleRows(first, runs.back().count) = Field::Random(runs.back().count, 3);
+  }
+  const auto solved = [&](const RunContext& context, const std::vector<UnknownRun>& where) {
+    SpectralPlate plate(context);
+    REQUIRE(plate.prepare({grid, {1.5, 1, 2}, 7}));
+    Field solution = Field::Zero(unknowns, 3);
+    const Field other = Field::Random(unknowns, 3);  // nothing of it may be left
+    plate.solve_for({0, 2}, {other.data(), width, unknowns}, {}, {solution.data(), width, unknowns});
+    plate.solve_for({0, 2}, {load.data(), width, unknowns}, where,
+                    {solution.data(), width, unknowns});
+    return solution;
+  };
+  const Field whole = solved({}, {});
+  const auto check = [&](const RunContext& context) {
+    const Field some = solved(context, runs);
+    for (const UnknownRun& run : runs) {
+      CAPTURE(run.first, run.count);
+      CHECK(some.middleRows(run.first, run.count) == whole.middleRows(run.first, run.count));
+    }
+  };
+  ThreadPool threads(3);
+  check({.threads = &threads});
+  if (testing::watches_threads) return;
+  for (int which = 0; runnable_kernels(which); ++which) {
+    CAPTURE(runnable_kernels(which)->name);
+    check({.most_lanes = runnable_kernels(which)->lanes});
+  }
 }
 
 TEST_CASE("the spectral solver keeps within the memory it may have", "[plate][spectral]") {

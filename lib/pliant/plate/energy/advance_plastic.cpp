@@ -1,4 +1,5 @@
 #include <functional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -73,8 +74,8 @@ class FlowingGrid final : public FlowingPlate {
         nodes_(held) {}
 
   Result<void> solve(const std::vector<int>& components, const Field& forces,
-                     Field& solution) override {
-    return solver_.solve_for(components, forces, solution);
+                     std::span<const UnknownRun> runs, Field& solution) override {
+    return solver_.solve_for(components, forces, runs, solution);
   }
 
   Field forces_of(const PlasticField& plastic) override {

@@ -114,7 +114,7 @@ template <class F>
 void FlowingPlaces::for_each_span(const F& f) const {
   for (std::size_t n = 0; n < components_.size(); ++n) {
     std::size_t begin = n * pitch();
-    for (const Span& span : spans_) {
+    for (const UnknownRun& span : spans_) {
       f(begin, components_[n], span.first, span.count);
       begin += static_cast<std::size_t>(span.count);
     }

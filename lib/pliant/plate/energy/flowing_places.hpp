@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "pliant/plate/energy/plastic_steps.hpp"
@@ -20,6 +21,9 @@ class FlowingPlaces {
                 std::vector<int> components, Eigen::Index unknowns);
 
   const std::vector<int>& places() const { return places_; }
+
+  /// The unknowns that they depend on.
+  std::span<const UnknownRun> runs() const { return spans_; }
 
   Numbers zero() const { return Numbers(components_.size() * pitch(), 0.0); }
 
@@ -61,15 +65,10 @@ class FlowingPlaces {
   template <class F>
   void for_each_span(const F& f) const;
 
-  // Neighbouring unknowns of the plate.
-  struct Span {
-    int first, count;
-  };
-
   const PlateKernels& kernels_;
   std::vector<int> places_, components_;
-  std::vector<int> unknowns_;  // of the plate
-  std::vector<Span> spans_;    // of these
+  std::vector<int> unknowns_;      // of the plate
+  std::vector<UnknownRun> spans_;  // of these
   std::vector<PlaceCurvatures> held_;
   std::vector<double> shares_;  // 1 + H of each place
   std::vector<FlowRun> runs_;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -170,7 +171,7 @@ class EquilibriumSteps final : public PlasticSteps {
                                      terms_.inertia.cwiseProduct(motion.velocity.col(k));
       }
       if (places_) places_->add_to(sums_, forces_);
-      if (auto solved = solve(sums_); !solved) return solved;
+      if (auto solved = solve(sums_, {}, x_); !solved) return solved;
       if ((round > 0 || !places_) && !yields_elsewhere(from)) {
         if (!places_) return {};
         places_->take_from(x_, way_);
@@ -265,17 +266,16 @@ class EquilibriumSteps final : public PlasticSteps {
   Result<void> solve_on_places(const Numbers& forces, Numbers& x) {
     if (on_places_.rows() == 0) on_places_ = solution_ = Field::Zero(x_.rows(), 3);
     places_->add_to(on_places_, forces);
-    auto solved = solve(on_places_, solution_);
+    auto solved = solve(on_places_, places_->runs(), solution_);
     places_->clear_in(on_places_);
     if (solved) places_->take_from(solution_, x);
     return solved;
   }
 
-  Result<void> solve(const Field& forces, Field& solution) {
+  Result<void> solve(const Field& forces, std::span<const UnknownRun> runs, Field& solution) {
     if (context_.is_stopped()) return interrupted();
-    return plate_.solve(components_, forces, solution);
+    return plate_.solve(components_, forces, runs, solution);
   }
-  Result<void> solve(const Field& forces) { return solve(forces, x_); }
 
   // Of what moves, and of the slopes of a surface, which have another unit: what flows may press on
   // slopes alone.

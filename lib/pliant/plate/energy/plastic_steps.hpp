@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pliant/plate/energy/place_curvatures.hpp"
@@ -38,9 +39,10 @@ class FlowingPlate {
  public:
   virtual ~FlowingPlate() = default;
 
-  /// A^-1 forces of these components; other forces are 0. The others of the solution are left.
+  /// A^-1 forces of these components; other forces are 0. The others of the solution are left. If
+  /// there are `runs`, forces are 0 outside, and the solution may be left there.
   virtual Result<void> solve(const std::vector<int>& components, const Field& forces,
-                             Field& solution) = 0;
+                             std::span<const UnknownRun> runs, Field& solution) = 0;
 
   /// The forces of plastic curvatures, sum of omega B^T C k_p.
   virtual Field forces_of(const PlasticField& plastic) = 0;

@@ -27,22 +27,69 @@ int modes_of(int parity, int length) {
 SpectralPlate::SpectralPlate(const RunContext& context)
     : context_(context), kernels_(kernels_of_width(context.most_lanes)), memory_(context.memory) {}
 
-// Calls work(component, first, last, numbers) for columns [first, last) of `count`, all of them, of
+// Calls work(component, first, last, numbers) for columns [first, last), all those of `parts`, of
 // each component that moves; with the numbers that a task works in. Columns are independent, so no
 // bit depends on how they are divided.
 template <class Work>
-void SpectralPlate::for_columns(int count, const Work& work) {
-  const std::size_t tasks = task_count();
-  const std::size_t units = static_cast<std::size_t>(filled_up(count)) / row_unit;
-  const auto begin = [&](std::size_t task) {
-    return std::min(count, static_cast<int>(units * task / tasks) * row_unit);
+void SpectralPlate::for_columns(const std::vector<Columns>& parts, const Work& work) {
+  const auto units_of = [](const Columns& part) {
+    return filled_up(part.last - part.first) / row_unit;
   };
+  int units = 0;
+  for (const Columns& part : parts) units += units_of(part);
+  const std::size_t tasks = task_count();
   for_each(tasks, [&](std::size_t task) {
+    const int begin = static_cast<int>(units * task / tasks);
+    const int end = static_cast<int>(units * (task + 1) / tasks);
     for (int component = 0; component < 3; ++component) {
       if (is_still_[component]) continue;
-      work(component, begin(task), begin(task + 1), work_ + task * work_size_);
+      int before = 0;
+      for (const Columns& part : parts) {
+        const int own = units_of(part);
+        const auto column = [&](int unit) {
+          return std::min(part.last, part.first + row_unit * std::clamp(unit - before, 0, own));
+        };
+        if (column(begin) < column(end)) {
+          work(component, column(begin), column(end), work_ + task * work_size_);
+        }
+        before += own;
+      }
     }
   });
+}
+
+std::vector<SpectralPlate::Columns> SpectralPlate::all_columns() const {
+  return {{0, plans_[1].length() - 1}};
+}
+
+// Those of the transforms across that have any of these nodes, and their neighbours.
+std::vector<SpectralPlate::Columns> SpectralPlate::columns_with(
+    std::span<const UnknownRun> runs) const {
+  const int count = plans_[1].length() - 1, width = columns_ - 2;
+  std::vector<char> has(static_cast<std::size_t>(filled_up(count) / row_unit), 0);
+  const auto mark = [&](int first, int last) {
+    for (int unit = first / row_unit; unit <= last / row_unit; ++unit) has[unit] = 1;
+  };
+  for (const UnknownRun& run : runs) {
+    const int end = run.first + run.count;
+    for (int begin = run.first, next = 0; begin < end; begin = next) {
+      const int row = begin / width;
+      next = std::min(end, (row + 1) * width);
+      if (is_along_u_) {
+        mark(begin - row * width, next - 1 - row * width);
+      } else {
+        mark(row, row);
+      }
+    }
+  }
+  std::vector<Columns> parts;
+  for (int unit = 0; unit < static_cast<int>(has.size()); ++unit) {
+    if (!has[unit]) continue;
+    const int first = unit * row_unit;
+    if (parts.empty() || parts.back().last < first) parts.push_back({first, first});
+    parts.back().last = std::min(count, first + row_unit);
+  }
+  return parts;
 }
 
 TransformView SpectralPlate::transform_of(long row_stride) const {
@@ -282,23 +329,50 @@ ComponentView SpectralPlate::component_of(int k, int component) const {
 }
 
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3]) {
+  to_sines(field, to, all_columns());
+}
+
+// The field is 0 but in these columns.
+void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
+                             const std::vector<Columns>& parts) {
   const TransformView view = transform_of(field.row_stride);
-  for_columns(plans_[1].length() - 1, [&](int component, int first, int last, double* work) {
+  const int count = plans_[1].length() - 1;
+  for (int component = 0; component < 3; ++component) {
+    if (is_still_[component]) continue;
+    int column = 0;
+    const auto clear_to = [&](int end) {
+      for (; column < end; ++column) {
+        std::fill_n(between_[component] + long{column} * view.between_pitch, between_width(), 0.0);
+      }
+    };
+    for (const Columns& part : parts) {
+      clear_to(part.first);
+      column = part.last;
+    }
+    clear_to(count);
+  }
+  for_columns(parts, [&](int component, int first, int last, double* work) {
     kernels_.in_across(view, field.first + component * field.component_stride, first, last,
                        between_[component], work);
   });
-  for_columns(between_width(), [&](int component, int first, int last, double* work) {
+  for_columns({{0, between_width()}}, [&](int component, int first, int last, double* work) {
     kernels_.in_along(view, between_[component], first, last, coefficients_of(to, component), work);
   });
 }
 
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field) {
+  from_sines(from, field, all_columns());
+}
+
+// Writes the field only in these columns.
+void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field,
+                               const std::vector<Columns>& parts) {
   const TransformView view = transform_of(field.row_stride);
-  for_columns(between_width(), [&](int component, int first, int last, double* work) {
+  for_columns({{0, between_width()}}, [&](int component, int first, int last, double* work) {
     kernels_.out_along(view, coefficients_of(from, component), first, last, between_[component],
                        work);
   });
-  for_columns(plans_[1].length() - 1, [&](int component, int first, int last, double* work) {
+  for_columns(parts, [&](int component, int first, int last, double* work) {
     kernels_.out_across(view, between_[component], first, last,
                         field.first + component * field.component_stride, work);
   });
@@ -388,18 +462,19 @@ void SpectralPlate::solve(const ConstNodesView& load, const NodesView& solution)
 }
 
 void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNodesView& load,
-                              const NodesView& solution) {
+                              std::span<const UnknownRun> runs, const NodesView& solution) {
   PLIANT_EXPECTS(prepared_.has_value());
   ++counts_.solves;
   std::fill_n(is_still_, 3, true);
   for (const int component : components) is_still_[component] = false;
-  to_sines(load, &Parity::load);
+  const std::vector<Columns> parts = runs.empty() ? all_columns() : columns_with(runs);
+  to_sines(load, &Parity::load, parts);
   const Blocks blocks = moving_blocks();
   for_each(blocks.count, [&](std::size_t task) {
     const auto [k, index] = blocks.all[task];
     kernels_.solve(view_of(k), component_of(k, index));
   });
-  from_sines(&Parity::displacement, solution);
+  from_sines(&Parity::displacement, solution, parts);
 }
 
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "pliant/core/memory_budget.hpp"
@@ -12,6 +13,7 @@
 #include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/number_block.hpp"
 #include "pliant/plate/plate_problem.hpp"
+#include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/solver_choice.hpp"
 #include "pliant/plate/spectral/sine_plan.hpp"
 #include "pliant/plate/time_steps.hpp"
@@ -46,9 +48,11 @@ class SpectralPlate {
   /// Solves for three right-hand sides on the interior nodes. Requires: prepared.
   void solve(const ConstNodesView& load, const NodesView& solution);
 
-  /// Likewise for some components only; the others are neither read nor written.
+  /// Likewise for some components only; the others are neither read nor written. If there are
+  /// `runs` of interior nodes, the load must be 0 outside, and the solution may be left there.
+  /// Lines across without any of these nodes are not transformed; the numbers are the same.
   void solve_for(const std::vector<int>& components, const ConstNodesView& load,
-                 const NodesView& solution);
+                 std::span<const UnknownRun> runs, const NodesView& solution);
 
   /// Steps on the interior nodes with the prepared shift; the load excludes the rim's part.
   /// Requires: prepared; shift and inertia are those of steps.solved_length(). Returns false if the
@@ -101,6 +105,11 @@ class SpectralPlate {
     Block all[12] = {};
   };
 
+  // Columns `first` to before `last` of a transform, from a multiple of `row_unit` on.
+  struct Columns {
+    int first, last;
+  };
+
   Result<void> lay_out(int columns, int rows);
   void carve(Carver& carver);
   void fill_modes();
@@ -118,7 +127,13 @@ class SpectralPlate {
   CoefficientsView coefficients_of(double* (Parity::*numbers)[3], int component) const;
   int between_width() const;
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3]);
+  void to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
+                const std::vector<Columns>& parts);
   void from_sines(double* (Parity::*from)[3], const NodesView& field);
+  void from_sines(double* (Parity::*from)[3], const NodesView& field,
+                  const std::vector<Columns>& parts);
+  std::vector<Columns> all_columns() const;
+  std::vector<Columns> columns_with(std::span<const UnknownRun> runs) const;
   bool is_large() const { return long{columns_} * rows_ > 10'000; }
   // Runs tasks that write different numbers. On a small plate they are not worth a thread.
   template <class Work>
@@ -126,7 +141,7 @@ class SpectralPlate {
     pliant::for_each(is_large() ? context_.threads : nullptr, count, work);
   }
   template <class Work>
-  void for_columns(int count, const Work& work);
+  void for_columns(const std::vector<Columns>& parts, const Work& work);
 
   RunContext context_;
   const PlateKernels& kernels_;

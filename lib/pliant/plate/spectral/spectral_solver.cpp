@@ -111,12 +111,12 @@ class SpectralSolver final : public PlateSolver {
   }
 
   Result<void> solve_for(const std::vector<int>& components, const Field& right_hand_sides,
-                         Field& solution) override {
+                         std::span<const UnknownRun> runs, Field& solution) override {
     if (Mirror(outline_).doubles()) {
-      return PlateSolver::solve_for(components, right_hand_sides, solution);
+      return PlateSolver::solve_for(components, right_hand_sides, runs, solution);
     }
     const long width = outline_.grid().columns - 2;
-    plate_.solve_for(components, {right_hand_sides.data(), width, right_hand_sides.rows()},
+    plate_.solve_for(components, {right_hand_sides.data(), width, right_hand_sides.rows()}, runs,
                      {solution.data(), width, solution.rows()});
     return {};
   }

@@ -36,8 +36,8 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
 
 PlateWeights TrianglePlate::weights() const {
   PlateWeights weights;
-  weights.areas = Eigen::Map<const Eigen::VectorXd>(masses_.data(),
-                                                    static_cast<Eigen::Index>(masses_.size()));
+  weights.areas =
+      Eigen::Map<const Eigen::VectorXd>(masses_.data(), static_cast<Eigen::Index>(masses_.size()));
   weights.masses = weights.drags = weights.areas;
   for (int k = 0; factors_ && k < static_cast<int>(masses_.size()); ++k) {
     weights.masses[k] *= factor_at(factors_->density, k);
@@ -50,8 +50,8 @@ std::size_t TrianglePlate::most_entries() const {
   std::size_t count = 0;
   for (int block = 0; block < cells_.block_count(); ++block) {
     // The pairs of at most 6 unknowns of each cell, of which a slope may be a sum of two.
-    const auto size = static_cast<std::size_t>(
-        9 * (cells_.block_starts[block + 1] - cells_.block_starts[block]));
+    const auto size =
+        static_cast<std::size_t>(9 * (cells_.block_starts[block + 1] - cells_.block_starts[block]));
     count += size * (size + 1) / 2;
   }
   return count;
@@ -169,7 +169,7 @@ Result<Field> TrianglePlate::solve(const Field& forces, Accuracy accuracy) {
 }
 
 Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const TimeSteps& steps,
-                                             PlateState state) {
+                                          PlateState state) {
   const auto points = static_cast<Eigen::Index>(masses_.size());
   PLIANT_EXPECTS(state.displacement.rows() == cells_.point_count &&
                  state.velocity.rows() == points && problem.load.rows() == points);
@@ -183,7 +183,8 @@ Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const 
   const StageTimer solving(context_.profile, Stage::Solve);
   Motion motion{state.displacement.topRows(points), std::move(state.velocity)};
   if (problem.law) {
-    if (auto done = advance_plastic(problem, steps, state, motion); !done) return fail(done.error());
+    if (auto done = advance_plastic(problem, steps, state, motion); !done)
+      return fail(done.error());
   } else {
     const auto forces_by = [&](const EdgeTangents& slopes, const Field& load) {
       auto sum = reduced(held_forces(slopes, state.displacement));
@@ -229,7 +230,8 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
   explicit FlowingTriangles(TrianglePlate& plate)
       : plate_(plate), triangles_(plate.plasticity_->triangles) {}
 
-  Result<void> solve(const std::vector<int>&, const Field& forces, Field& solution) override {
+  Result<void> solve(const std::vector<int>&, const Field& forces, std::span<const UnknownRun>,
+                     Field& solution) override {
     Field eliminated = forces;
     const InnerUnknowns& inner = plate_.plasticity_->inner;
     auto left = plate_.plate_.solve(inner.eliminate(eliminated));
@@ -262,8 +264,8 @@ Result<void> TrianglePlate::advance_plastic(const TriangleProblem& problem, cons
   PLIANT_EXPECTS(state.plastic.rows() == static_cast<Eigen::Index>(triangles_.size()));
   InnerUnknowns& inner = plasticity_->inner;
   PlasticTriangles& triangles = plasticity_->triangles;
-  std::vector<int> components = components_at_work(problem.tangents, problem.load, state.displacement,
-                                                   motion.velocity, state.plastic);
+  std::vector<int> components = components_at_work(
+      problem.tangents, problem.load, state.displacement, motion.velocity, state.plastic);
   triangles.set_law(*problem.law, factors_.get());
   triangles.hold(cells_, problem.tangents, state.displacement);
   Field known = held_forces(problem.tangents, state.displacement);
@@ -278,14 +280,13 @@ Result<void> TrianglePlate::advance_plastic(const TriangleProblem& problem, cons
   const auto stays_elastic = [&](const Field& solution) {
     return !triangles.yields(inner.recovered(solution, forces), state.plastic);
   };
-  const auto gone = plate_.advance(problem.dynamics, steps, {{}, *std::move(of_matrix)}, motion,
-                                   stays_elastic);
+  const auto gone =
+      plate_.advance(problem.dynamics, steps, {{}, *std::move(of_matrix)}, motion, stays_elastic);
   if (!gone) return fail(gone.error());
   if (*gone == steps.count) return {};
   FlowingTriangles flowing(*this);
   const auto all = make_plastic_steps(
-      flowing, context_,
-      plate_.terms(std::move(known), problem.dynamics, steps.solved_length()),
+      flowing, context_, plate_.terms(std::move(known), problem.dynamics, steps.solved_length()),
       problem.law->hardening, steps, std::move(components), state.plastic);
   return run_plastic_steps(*all, steps.count - *gone, motion, state.plastic);
 }
