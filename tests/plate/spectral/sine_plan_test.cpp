@@ -155,6 +155,54 @@ TEST_CASE("every width of vectors transforms to the same bits", "[plate][spectra
   }
 }
 
+TEST_CASE("two columns at once are transformed by the definition too, to the same bits",
+          "[plate][spectral]") {
+  for (const int length : lengths()) {
+    CAPTURE(length);
+    const SinePlan plan(length);
+    if (!plan.view().places) continue;
+    const int points = length - 1;
+    const std::vector<double> columns = random_points(points * 16);  // point by point
+    std::vector<double> first;
+    for (int which = 0; runnable_kernels(which); ++which) {
+      const PlateKernels& kernels = *runnable_kernels(which);
+      std::vector<double> work(static_cast<std::size_t>(sine_work(plan.view()) * kernels.lanes));
+      std::vector<double> result(columns.size());
+      for (int begin = 0; begin < 8; begin += kernels.lanes) {
+        std::vector<double> tiles[2];
+        const auto each = [&](const auto& work_on) {
+          for (int tile : {0, 1}) {
+            for (int j = 0; j < points; ++j) {
+              for (int lane = 0; lane < kernels.lanes; ++lane) {
+                work_on(tile, j * kernels.lanes + lane, j * 16 + 8 * tile + begin + lane);
+              }
+            }
+          }
+        };
+        each([&](int tile, int, int at) { tiles[tile].push_back(columns[at]); });
+        kernels.sine_transform_pair(plan.view(), tiles[0].data(), tiles[1].data(), work.data());
+        each([&](int tile, int k, int at) { result[at] = tiles[tile][k]; });
+      }
+      if (which == 0) first = result;
+      CHECK((result == first));
+    }
+    for (const int which : {0, 7}) {
+      std::vector<double> both, difference;
+      for (const int column : {which, which + 8}) {
+        std::vector<double> x;
+        for (int j = 0; j < points; ++j) x.push_back(columns[j * 16 + column]);
+        const std::vector<long double> expected = defined(length, x);
+        for (int k = 0; k < points; ++k)
+          difference.push_back(static_cast<double>(expected[k] - first[k * 16 + column]));
+        both.insert(both.end(), x.begin(), x.end());
+      }
+      // Odd coefficients are sums of up to L/2 numbers, each as wrong as one above: a random walk.
+      const double roundings = 2 * std::sqrt(length / 2.0);
+      CHECK(norm(difference) <= roundings * 2.2e-16 * std::sqrt(length / 2.0) * norm(both));
+    }
+  }
+}
+
 TEST_CASE("a sine transform keeps to the room that it asks for", "[plate][spectral]") {
   for (int length = 2; length < 1200; ++length) {
     CAPTURE(length);

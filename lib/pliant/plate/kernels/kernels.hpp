@@ -32,7 +32,7 @@ struct SineView {
   int length = 2;                  ///< L >= 2
   FourierView fourier;             ///< of L points, or of the convolution
   const double* fold = nullptr;    ///< except with powers: cos and sin of pi j/L for j < L
-  const int* places = nullptr;     ///< with stages: index of wave number k after them, for k < L/2
+  const int* places = nullptr;     ///< with stages: index of wave number k after them, for k < L
   const double* chirp = nullptr;   ///< with a chirp: cos and sin of pi j^2/L, j < L
   PairsView in, out;               ///< with powers: (L-1)/2 pairs each, in the order of the powers
   const double* kernel = nullptr;  ///< of a convolution: transformed, in the order of the stages
@@ -44,6 +44,10 @@ constexpr long sine_work(const SineView& view) { return 2L * view.fourier.length
 
 /// Columns that the transforms of a field read together. Their space follows the workspace.
 constexpr int group_columns = 32;
+
+/// Columns of which each of the first half is transformed together with one of the second, if
+/// transforms are in pairs: no bit depends on vectors, but the two columns on each other's rounding.
+constexpr int pair_columns = 16;
 
 /// The modes of one direction are stored by parity: 1, 3, 5 ... and then 2, 4, 6 ...
 constexpr int odd_modes(int length) { return length / 2; }
@@ -63,6 +67,7 @@ struct TransformView {
   int between_pitch = 0;              ///< of the (length along - 1) x between_pitch numbers between
   int even_column = 0;                ///< of a row between: where the even modes begin
   int pitch[2] = {0, 0};              ///< of the rows of coefficients with odd, even modes across
+  bool is_in_pairs = false;           ///< of columns, where the length allows
   const double* across_in = nullptr;  ///< factor of each mode in the forward transform, by mode - 1
   const double* along_in = nullptr;
   const double* across_out = nullptr;  ///< and in the inverse transform
@@ -291,8 +296,11 @@ struct PlateKernels {
 
   /// Transforms `lanes` columns at once: `points` is (length - 1) x lanes, `work` as `sine_work`.
   void (*sine_transform)(const SineView& view, double* points, double* work);
+  /// Likewise of two such tiles at once, for half the work. Requires: view.places.
+  void (*sine_transform_pair)(const SineView& view, double* points, double* others, double* work);
 
-  /// One chunk of the transforms across: those at nodes [first, last) along.
+  /// One chunk of the transforms across: those at nodes [first, last) along. Chunks of all begin at
+  /// multiples of `pair_columns`.
   void (*in_across)(const TransformView& view, const double* field, int first, int last,
                     double* between, double* work);
   /// One chunk of the transforms along: columns [first, last) between.

@@ -328,6 +328,40 @@ void by_stages(const SineView& view, double* points, double* work) {
   }
 }
 
+// Eq. (29a): the real input of the Fourier transform.
+PLIANT_INLINE Lanes paired(const double* fold, int length, double* points, int j) {
+  const Lanes x = load(row(points, j));
+  const Lanes mirrored = load(row(points, length - j));
+  return (x + mirrored) * fold[2 * j + 1] + 0.5 * (x - mirrored);
+}
+
+// Two real inputs at once, the second one as the imaginary part of the first.
+void sine_transform_pair(const SineView& view, double* points, double* others, double* work) {
+  const int length = view.length;
+  const double* const fold = view.fold;
+  const Stages stages = stages_of(view.fourier);
+  split(stages, work, [=](int j) PLIANT_INLINED {
+    if (j == 0) return Complex{};
+    return Complex{paired(fold, length, points, j), paired(fold, length, others, j)};
+  });
+  transform(stages.next(), stages.radix(), work);
+  const Complex first = load_complex(point(work, 0));
+  Lanes odd = 0.5 * first.re, other_odd = 0.5 * first.im;
+  store(row(points, 1), odd);
+  store(row(others, 1), other_odd);
+  for (int k = 1; 2 * k < length; ++k) {
+    const Complex x = load_complex(point(work, view.places[k]));
+    const Complex mirrored = load_complex(point(work, view.places[length - k]));
+    store(row(points, 2 * k), 0.5 * (mirrored.im - x.im));
+    store(row(others, 2 * k), 0.5 * (x.re - mirrored.re));
+    if (2 * k + 1 == length) break;
+    odd = odd + 0.5 * (x.re + mirrored.re);
+    other_odd = other_odd + 0.5 * (x.im + mirrored.im);
+    store(row(points, 2 * k + 1), odd);
+    store(row(others, 2 * k + 1), other_odd);
+  }
+}
+
 // The Fourier transform by a convolution with a chirp (Bluestein).
 void by_chirp(const SineView& view, double* points, double* work) {
   const int length = view.length;

@@ -151,6 +151,28 @@ void fetch_modes(const TransformView& view, const double* from, int parity, int 
   }
 }
 
+// Transforms so many columns side by side in tiles: in pairs if that is wanted, and all sixteen are
+// there.
+PLIANT_INLINE void transform_tiles(const SineView& view, bool is_in_pairs, int width, double* tiles,
+                                   double* work) {
+  const long points = view.length - 1;
+  int done = 0;
+  if (is_in_pairs && view.places) {
+    constexpr int half = pair_columns / 2;
+    for (; done + pair_columns <= width; done += pair_columns) {
+      for (int lane = done; lane < done + half; lane += lanes) {
+        sine_transform_pair(view, tiles + lane * points, tiles + (lane + half) * points, work);
+      }
+    }
+  }
+  for (; done < width; done += lanes) sine_transform(view, tiles + done * points, work);
+}
+
+// Columns that are fetched, transformed and put while they are in cache.
+PLIANT_INLINE int columns_at_once(const TransformView& view) {
+  return view.is_in_pairs ? pair_columns : lanes;
+}
+
 void in_across(const TransformView& view, const double* field, int first, int last, double* between,
                double* work) {
   const int points = view.across.length - 1;
@@ -160,16 +182,20 @@ void in_across(const TransformView& view, const double* field, int first, int la
     if (view.along_stride == 1) {
       fetch_columns(field + i, view.across_stride, points, width, tiles);
     }
-    for (int done = 0; done < width; done += lanes) {
-      const int count = least(lanes, width - done);
-      double* const tile = tiles + static_cast<long>(done) * points;
-      if (view.along_stride != 1) {
-        fetch_rows(field + (i + done) * view.along_stride, view.along_stride, points, count, tile);
+    for (int begin = 0; begin < width; begin += columns_at_once(view)) {
+      const int end = least(width, begin + columns_at_once(view));
+      for (int done = begin; view.along_stride != 1 && done < end; done += lanes) {
+        fetch_rows(field + (i + done) * view.along_stride, view.along_stride, points,
+                   least(lanes, end - done), tiles + static_cast<long>(done) * points);
       }
-      sine_transform(view.across, tile, work);
-      double* const to = between + static_cast<long>(i + done) * view.between_pitch;
-      put_modes(view, tile, 0, count, to);
-      put_modes(view, tile, 1, count, to);
+      transform_tiles(view.across, view.is_in_pairs, end - begin,
+                      tiles + static_cast<long>(begin) * points, work);
+      for (int done = begin; done < end; done += lanes) {
+        const double* const tile = tiles + static_cast<long>(done) * points;
+        double* const to = between + static_cast<long>(i + done) * view.between_pitch;
+        put_modes(view, tile, 0, least(lanes, end - done), to);
+        put_modes(view, tile, 1, least(lanes, end - done), to);
+      }
     }
   }
 }
@@ -180,15 +206,19 @@ void out_across(const TransformView& view, const double* between, int first, int
   double* const tiles = tiles_in(view.across, work);
   for (int i = first; i < last; i += group_columns) {
     const int width = least(group_columns, last - i);
-    for (int done = 0; done < width; done += lanes) {
-      const int count = least(lanes, width - done);
-      double* const tile = tiles + static_cast<long>(done) * points;
-      const double* const from = between + static_cast<long>(i + done) * view.between_pitch;
-      fetch_modes(view, from, 0, count, tile);
-      fetch_modes(view, from, 1, count, tile);
-      sine_transform(view.across, tile, work);
-      if (view.along_stride != 1) {
-        put_rows(tile, view.along_stride, points, count, field + (i + done) * view.along_stride);
+    for (int begin = 0; begin < width; begin += columns_at_once(view)) {
+      const int end = least(width, begin + columns_at_once(view));
+      for (int done = begin; done < end; done += lanes) {
+        double* const tile = tiles + static_cast<long>(done) * points;
+        const double* const from = between + static_cast<long>(i + done) * view.between_pitch;
+        fetch_modes(view, from, 0, least(lanes, end - done), tile);
+        fetch_modes(view, from, 1, least(lanes, end - done), tile);
+      }
+      transform_tiles(view.across, view.is_in_pairs, end - begin,
+                      tiles + static_cast<long>(begin) * points, work);
+      for (int done = begin; view.along_stride != 1 && done < end; done += lanes) {
+        put_rows(tiles + static_cast<long>(done) * points, view.along_stride, points,
+                 least(lanes, end - done), field + (i + done) * view.along_stride);
       }
     }
     if (view.along_stride == 1) put_columns(tiles, view.across_stride, points, width, field + i);
@@ -211,9 +241,7 @@ void in_along(const TransformView& view, const double* between, int first, int l
   for (int column = first; column < last; column += group_columns) {
     const int width = least(group_columns, last - column);
     fetch_columns(between + column, view.between_pitch, points, width, tiles);
-    for (int done = 0; done < width; done += lanes) {
-      sine_transform(view.along, tiles + static_cast<long>(done) * points, work);
-    }
+    transform_tiles(view.along, view.is_in_pairs, width, tiles, work);
     for (int k = 0; k < points; ++k) {
       for (int done = 0; done < width; done += lanes) {
         store(coefficients_at(view, coefficients, k, column + done),
@@ -236,9 +264,7 @@ void out_along(const TransformView& view, const CoefficientsView& coefficients, 
               load(coefficients_at(view, coefficients, k, column + done)) * view.along_out[k]);
       }
     }
-    for (int done = 0; done < width; done += lanes) {
-      sine_transform(view.along, tiles + static_cast<long>(done) * points, work);
-    }
+    transform_tiles(view.along, view.is_in_pairs, width, tiles, work);
     put_columns(tiles, view.between_pitch, points, width, between + column);
   }
 }

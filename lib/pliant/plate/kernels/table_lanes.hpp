@@ -8,6 +8,7 @@ namespace pliant {
 const PlateKernels PLIANT_JOIN(PLIANT_KERNELS, _kernels) = {PLIANT_KERNELS_NAME,
                                                             lanes,
                                                             sine_transform,
+                                                            sine_transform_pair,
                                                             in_across,
                                                             in_along,
                                                             out_along,

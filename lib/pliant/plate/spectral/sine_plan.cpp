@@ -181,8 +181,8 @@ void SinePlan::make_fold() {
 
 // The index of wave number k has the digits of k in reverse order.
 void SinePlan::make_places() {
-  places_.reserve(static_cast<std::size_t>(length_ + 1) / 2);
-  for (int k = 0; 2 * k < length_; ++k) {
+  places_.reserve(static_cast<std::size_t>(length_));
+  for (int k = 0; k < length_; ++k) {
     int place = 0;
     int rest = k;
     int m = length_;

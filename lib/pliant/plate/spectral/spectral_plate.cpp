@@ -33,7 +33,7 @@ SpectralPlate::SpectralPlate(const RunContext& context)
 template <class Work>
 void SpectralPlate::for_columns(const std::vector<Columns>& parts, const Work& work) {
   const auto units_of = [](const Columns& part) {
-    return filled_up(part.last - part.first) / row_unit;
+    return (part.last - part.first + pair_columns - 1) / pair_columns;
   };
   int units = 0;
   for (const Columns& part : parts) units += units_of(part);
@@ -47,7 +47,7 @@ void SpectralPlate::for_columns(const std::vector<Columns>& parts, const Work& w
       for (const Columns& part : parts) {
         const int own = units_of(part);
         const auto column = [&](int unit) {
-          return std::min(part.last, part.first + row_unit * std::clamp(unit - before, 0, own));
+          return std::min(part.last, part.first + pair_columns * std::clamp(unit - before, 0, own));
         };
         if (column(begin) < column(end)) {
           work(component, column(begin), column(end), work_ + task * work_size_);
@@ -66,9 +66,9 @@ std::vector<SpectralPlate::Columns> SpectralPlate::all_columns() const {
 std::vector<SpectralPlate::Columns> SpectralPlate::columns_with(
     std::span<const UnknownRun> runs) const {
   const int count = plans_[1].length() - 1, width = columns_ - 2;
-  std::vector<char> has(static_cast<std::size_t>(filled_up(count) / row_unit), 0);
+  std::vector<char> has(static_cast<std::size_t>((count + pair_columns - 1) / pair_columns), 0);
   const auto mark = [&](int first, int last) {
-    for (int unit = first / row_unit; unit <= last / row_unit; ++unit) has[unit] = 1;
+    for (int unit = first / pair_columns; unit <= last / pair_columns; ++unit) has[unit] = 1;
   };
   for (const UnknownRun& run : runs) {
     const int end = run.first + run.count;
@@ -85,9 +85,9 @@ std::vector<SpectralPlate::Columns> SpectralPlate::columns_with(
   std::vector<Columns> parts;
   for (int unit = 0; unit < static_cast<int>(has.size()); ++unit) {
     if (!has[unit]) continue;
-    const int first = unit * row_unit;
+    const int first = unit * pair_columns;
     if (parts.empty() || parts.back().last < first) parts.push_back({first, first});
-    parts.back().last = std::min(count, first + row_unit);
+    parts.back().last = std::min(count, first + pair_columns);
   }
   return parts;
 }
@@ -468,6 +468,7 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
   std::fill_n(is_still_, 3, true);
   for (const int component : components) is_still_[component] = false;
   const std::vector<Columns> parts = runs.empty() ? all_columns() : columns_with(runs);
+  transform_.is_in_pairs = true;
   to_sines(load, &Parity::load, parts);
   const Blocks blocks = moving_blocks();
   for_each(blocks.count, [&](std::size_t task) {
@@ -475,6 +476,7 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
     kernels_.solve(view_of(k), component_of(k, index));
   });
   from_sines(&Parity::displacement, solution, parts);
+  transform_.is_in_pairs = false;
 }
 
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,

@@ -105,7 +105,7 @@ class SpectralPlate {
     Block all[12] = {};
   };
 
-  // Columns `first` to before `last` of a transform, from a multiple of `row_unit` on.
+  // Columns `first` to before `last` of a transform, from a multiple of `pair_columns` on.
   struct Columns {
     int first, last;
   };
