@@ -131,7 +131,7 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   set_up.stop();
   const StageTimer solving(solver.context().profile, Stage::Solve);
   Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
-  PlasticField plastic = state.plastic;
+  PlasticField& plastic = state.plastic;  // grows with the first step that flows
   FlowingGrid flowing(solver, plate, outline, state.displacement);
   const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
                                       problem.law->hardening, steps, plate.components(), plastic);
@@ -145,7 +145,6 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   if (!ran) return fail(ran.error());
   state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
   state.velocity = with_interior(outline, std::move(state.velocity), motion.velocity);
-  state.plastic = std::move(plastic);
   return true;
 }
 

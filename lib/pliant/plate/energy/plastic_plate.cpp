@@ -220,6 +220,10 @@ void PlasticPlate::add_forces(const PlasticField& plastic, Field& forces) const 
 PlaceRows PlasticPlate::rows_of(const std::vector<int>& nodes, const std::vector<int>& numbers,
                                 const Field& w) const {
   PlaceRows rows;
+  rows.pattern_of.reserve(nodes.size());
+  rows.starts.reserve(nodes.size() + 1);
+  rows.unknowns.reserve(9 * nodes.size());
+  rows.held.reserve(nodes.size());
   const int columns = grid_.columns, last = grid_.rows - 1;
   std::array<int, 9> patterns;  // of nodes at the ends of lines, if the material is even
   patterns.fill(-1);

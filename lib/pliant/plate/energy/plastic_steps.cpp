@@ -264,7 +264,8 @@ class EquilibriumSteps final : public PlasticSteps {
 
   // A^-1 forces, there.
   Result<void> solve_on_places(const Numbers& forces, Numbers& x) {
-    if (on_places_.rows() == 0) on_places_ = solution_ = Field::Zero(x_.rows(), 3);
+    if (on_places_.rows() == 0) on_places_ = Field::Zero(x_.rows(), 3);
+    solution_.resize(x_.rows(), 3);
     places_->add_to(on_places_, forces);
     auto solved = solve(on_places_, places_->runs(), solution_);
     places_->clear_in(on_places_);
@@ -315,7 +316,7 @@ class EquilibriumSteps final : public PlasticSteps {
   Numbers forces_, flowed_;  // that make x_, and those by what grows there
   Numbers way_, product_, gradient_, left_;
   Field sums_, x_;
-  Field on_places_, solution_;  // 0 but while it is solved for; its solution
+  Field on_places_, solution_;  // 0 but while it is solved for; its solution, on the places
 };
 
 }  // namespace
@@ -325,10 +326,11 @@ std::vector<int> components_at_work(const EdgeTangents& tangents, const Field& l
                                     const PlasticField& plastic) {
   std::vector<int> components;
   for (int k = 0; k < 3; ++k) {
-    const bool is_still =
-        load.col(k).isZero(0) && displacement.col(k).isZero(0) && velocity.col(k).isZero(0) &&
-        plastic.col(k).isZero(0) && plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0) &&
-        tangents.su0[k] == 0 && tangents.su1[k] == 0 && tangents.sv0[k] == 0 && tangents.sv1[k] == 0;
+    const bool is_still = load.col(k).isZero(0) && displacement.col(k).isZero(0) &&
+                          velocity.col(k).isZero(0) && plastic.col(k).isZero(0) &&
+                          plastic.col(3 + k).isZero(0) && plastic.col(6 + k).isZero(0) &&
+                          tangents.su0[k] == 0 && tangents.su1[k] == 0 && tangents.sv0[k] == 0 &&
+                          tangents.sv1[k] == 0;
     if (!is_still) components.push_back(k);
   }
   return components;
