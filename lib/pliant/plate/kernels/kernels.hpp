@@ -46,7 +46,8 @@ constexpr long sine_work(const SineView& view) { return 2L * view.fourier.length
 constexpr int group_columns = 32;
 
 /// Columns of which each of the first half is transformed together with one of the second, if
-/// transforms are in pairs: no bit depends on vectors, but the two columns on each other's rounding.
+/// transforms are in pairs: no bit depends on vectors, but the two columns on each other's
+/// rounding.
 constexpr int pair_columns = 16;
 
 /// The modes of one direction are stored by parity: 1, 3, 5 ... and then 2, 4, 6 ...
@@ -316,7 +317,7 @@ struct PlateKernels {
   void (*start)(const ParityView& parity, const ComponentView& component, double shift,
                 double inertia);
   /// Likewise for w = v = 0, which are not read, and the end: leaves the solution in
-  /// `displacement`.
+  /// `displacement`. All three may be one.
   void (*solve)(const ParityView& parity, const ComponentView& component);
   /// Solves for the edge and computes one step of one component.
   void (*step)(const ParityView& parity, const ComponentView& component, StepFactors factors);

@@ -473,9 +473,12 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
   const Blocks blocks = moving_blocks();
   for_each(blocks.count, [&](std::size_t task) {
     const auto [k, index] = blocks.all[task];
-    kernels_.solve(view_of(k), component_of(k, index));
+    // In place, so that less has to be in cache.
+    ComponentView component = component_of(k, index);
+    component.pending = component.displacement = component.load;
+    kernels_.solve(view_of(k), component);
   });
-  from_sines(&Parity::displacement, solution, parts);
+  from_sines(&Parity::load, solution, parts);
   transform_.is_in_pairs = false;
 }
 
