@@ -156,7 +156,8 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
   clear_rim(problem.outline, state.velocity);
   const PlasticPlate plate(problem,
                            components_at_work(problem.tangents, problem.load, state.displacement,
-                                              state.velocity, state.plastic));
+                                              state.velocity, state.plastic),
+                           kernels_of_width(solver.context().most_lanes));
   // A plate that goes on as it moves and yields then is not tried elastically.
   const Field next = state.displacement + steps.solved_length() * state.velocity;
   if (plate.yields(next, state.plastic)) {

@@ -8,8 +8,10 @@
 
 namespace pliant {
 
-PlasticPlate::PlasticPlate(const PlateProblem& problem, std::vector<int> components)
-    : grid_(problem.outline.grid()),
+PlasticPlate::PlasticPlate(const PlateProblem& problem, std::vector<int> components,
+                           const PlateKernels& kernels)
+    : kernels_(kernels),
+      grid_(problem.outline.grid()),
       factors_(problem.factors),
       tangents_(problem.tangents),
       components_(std::move(components)) {
@@ -125,29 +127,28 @@ void PlasticPlate::find_squared_stress(int j, const Field& w, const PlasticField
   squared[columns - 1] = squared_stress(columns - 1, j, w, from);
   const Stencil at = stencil(1, j);
   const Moduli<double> form = this->form(1, j);
-  const double share = 1 + law_.hardening;
   const PlaceCurvatures prescribed = by_tangents(1, j);  // across the row
-  const long row = grid_.node(0, j), below = at.below - 1, above = at.above - 1;
-  double* const sums = squared.data();
+  StressRow row;
+  row.share = 1 + law_.hardening;
+  row.twist = at.twist;
+  for (const auto& [weights, of] : {std::pair{row.along, &at.u}, {row.across, &at.v}}) {
+    weights[0] = of->before;
+    weights[1] = of->here;
+    weights[2] = of->after;
+  }
+  row.uu = form.uu;
+  row.coupling = form.coupling;
+  row.vv = form.vv;
+  row.uv = form.uv;
   for (const int k : components_) {
-    const double* const here = w.col(k).data() + row;
-    const double* const under = w.col(k).data() + below;
-    const double* const over = w.col(k).data() + above;
-    const double* const plastic_u = from.col(k).data() + row;
-    const double* const plastic_v = from.col(3 + k).data() + row;
-    const double* const plastic_uv = from.col(6 + k).data() + row;
-    const double slope = prescribed[3 + k];
-    for (int i = 1; i < columns - 1; ++i) {
-      const double of_u = at.u.before * here[i - 1] + at.u.here * here[i] +
-                          at.u.after * here[i + 1] - share * plastic_u[i];
-      const double of_v = at.v.before * under[i] + at.v.here * here[i] + at.v.after * over[i] +
-                          slope - share * plastic_v[i];
-      const double of_uv =
-          at.twist * ((over[i + 1] - over[i - 1]) - (under[i + 1] - under[i - 1])) -
-          share * plastic_uv[i];
-      sums[i] += form.uu * of_u * of_u + 2 * form.coupling * of_u * of_v + form.vv * of_v * of_v +
-                 form.uv * of_uv * of_uv;
-    }
+    const double* const of = w.col(k).data();
+    row.before = of + at.below;
+    row.here = of + at.node;
+    row.after = of + at.above;
+    for (int kind = 0; kind < 3; ++kind)
+      row.plastic[kind] = from.col(3 * kind + k).data() + at.node;
+    row.slope = prescribed[3 + k];
+    kernels_.add_squared_stress(row, columns - 2, squared.data() + 1);
   }
 }
 
@@ -160,6 +161,7 @@ void PlasticPlate::for_each_over(double part, const Field& w, const PlasticField
   const double even = bound(law_);
   for (int j = 0; j < grid_.rows; ++j) {
     find_squared_stress(j, w, from, squared);
+    if (!factors_ && !(kernels_.longest(grid_.columns, squared.data()) > even)) continue;
     for (int i = 0; i < grid_.columns; ++i) {
       const int node = grid_.node(i, j);
       if (squared[i] > (factors_ ? bound(law(node)) : even) && !f(node)) return;

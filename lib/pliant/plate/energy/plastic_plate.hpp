@@ -6,6 +6,7 @@
 #include "pliant/core/field.hpp"
 #include "pliant/plate/energy/plastic_steps.hpp"
 #include "pliant/plate/energy/plate_energy.hpp"
+#include "pliant/plate/kernels/kernels.hpp"
 
 namespace pliant {
 
@@ -14,7 +15,8 @@ namespace pliant {
 class PlasticPlate {
  public:
   /// Requires: problem.law.
-  PlasticPlate(const PlateProblem& problem, std::vector<int> components);
+  PlasticPlate(const PlateProblem& problem, std::vector<int> components,
+               const PlateKernels& kernels);
 
   /// The components that are not 0 all the time.
   const std::vector<int>& components() const { return components_; }
@@ -57,6 +59,7 @@ class PlasticPlate {
   const Moduli<double>& form(int i, int j) const;
   PlasticLaw law(int node) const;
 
+  const PlateKernels& kernels_;
   Grid grid_;
   PlasticLaw law_;
   std::shared_ptr<const NodeFactors> factors_;

@@ -290,6 +290,20 @@ struct FactorKernels {
   void (*solve_backward)(const SupernodesView& factor, int supernode, double* x);
 };
 
+/// One component of a row of nodes with one stencil and form, at the first of them. The rows
+/// before and after it, and a node more at both ends, are read too.
+struct StressRow {
+  const double* before = nullptr;  ///< displacements
+  const double* here = nullptr;
+  const double* after = nullptr;
+  const double* plastic[3] = {};         ///< k_p of uu, vv and uv
+  double share = 0;                      ///< 1 + H
+  double along[3] = {}, across[3] = {};  ///< weights of k_uu along the row, and of k_vv
+  double slope = 0;                      ///< what is prescribed of k_vv
+  double twist = 0;
+  double uu = 0, coupling = 0, vv = 0, uv = 0;  ///< the form C
+};
+
 /// The kernels for one width of vectors.
 struct PlateKernels {
   const char* name;
@@ -357,6 +371,9 @@ struct PlateKernels {
   /// now at `xi` change along it, times the way.
   double (*flow_along)(const FlowView& view, const double* way, const double* xi,
                        const double* tangent, double* change);
+
+  /// Adds the squared stress of one component at so many nodes of a row.
+  void (*add_squared_stress)(const StressRow& row, long count, double* sums);
 
   /// a . b, b <- part_a a + part_b b, and to += part of, of so many numbers, a multiple of 8.
   double (*dot_product)(long count, const double* a, const double* b);

@@ -196,6 +196,35 @@ double flow_along(const FlowView& view, const double* way, const double* xi, con
   }
 }
 
+// Of `Numbers` nodes from i on, one or as many as in a vector.
+template <class Numbers>
+PLIANT_INLINE Numbers squared_stress(const StressRow& row, long i) {
+  const auto at = [=](const double* from) PLIANT_INLINED {
+    if constexpr (sizeof(Numbers) == sizeof(double)) {
+      return from[i];
+    } else {
+      return load(from + i);
+    }
+  };
+  const Numbers here = at(row.here);
+  const Numbers of_u = row.along[0] * at(row.here - 1) + row.along[1] * here +
+                       row.along[2] * at(row.here + 1) - row.share * at(row.plastic[0]);
+  const Numbers of_v = row.across[0] * at(row.before) + row.across[1] * here +
+                       row.across[2] * at(row.after) + row.slope - row.share * at(row.plastic[1]);
+  const Numbers of_uv = row.twist * ((at(row.after + 1) - at(row.after - 1)) -
+                                     (at(row.before + 1) - at(row.before - 1))) -
+                        row.share * at(row.plastic[2]);
+  return row.uu * of_u * of_u + 2 * row.coupling * of_u * of_v + row.vv * of_v * of_v +
+         row.uv * of_uv * of_uv;
+}
+
+void add_squared_stress(const StressRow& row, long count, double* sums) {
+  long i = 0;
+  for (; i + lanes <= count; i += lanes)
+    store(sums + i, load(sums + i) + squared_stress<Lanes>(row, i));
+  for (; i < count; ++i) sums[i] += squared_stress<double>(row, i);
+}
+
 double dot_product(long count, const double* a, const double* b) {
   Eight sums[4] = {};
   long k = 0;
