@@ -31,7 +31,7 @@ SpectralPlate::SpectralPlate(const RunContext& context)
 // each component that moves; with the numbers that a task works in. Columns are independent, so no
 // bit depends on how they are divided.
 template <class Work>
-void SpectralPlate::for_columns(const std::vector<Columns>& parts, const Work& work) {
+void SpectralPlate::for_columns(std::span<const Columns> parts, const Work& work) {
   const auto units_of = [](const Columns& part) {
     return (part.last - part.first + pair_columns - 1) / pair_columns;
   };
@@ -56,10 +56,6 @@ void SpectralPlate::for_columns(const std::vector<Columns>& parts, const Work& w
       }
     }
   });
-}
-
-std::vector<SpectralPlate::Columns> SpectralPlate::all_columns() const {
-  return {{0, plans_[1].length() - 1}};
 }
 
 // Those of the transforms across that have any of these nodes, and their neighbours.
@@ -329,12 +325,13 @@ ComponentView SpectralPlate::component_of(int k, int component) const {
 }
 
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3]) {
-  to_sines(field, to, all_columns());
+  const Columns all[] = {{0, plans_[1].length() - 1}};
+  to_sines(field, to, all);
 }
 
 // The field is 0 but in these columns.
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
-                             const std::vector<Columns>& parts) {
+                             std::span<const Columns> parts) {
   const TransformView view = transform_of(field.row_stride);
   const int count = plans_[1].length() - 1;
   for (int component = 0; component < 3; ++component) {
@@ -355,20 +352,23 @@ void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[
     kernels_.in_across(view, field.first + component * field.component_stride, first, last,
                        between_[component], work);
   });
-  for_columns({{0, between_width()}}, [&](int component, int first, int last, double* work) {
+  const Columns between[] = {{0, between_width()}};
+  for_columns(between, [&](int component, int first, int last, double* work) {
     kernels_.in_along(view, between_[component], first, last, coefficients_of(to, component), work);
   });
 }
 
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field) {
-  from_sines(from, field, all_columns());
+  const Columns all[] = {{0, plans_[1].length() - 1}};
+  from_sines(from, field, all);
 }
 
 // Writes the field only in these columns.
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field,
-                               const std::vector<Columns>& parts) {
+                               std::span<const Columns> parts) {
   const TransformView view = transform_of(field.row_stride);
-  for_columns({{0, between_width()}}, [&](int component, int first, int last, double* work) {
+  const Columns between[] = {{0, between_width()}};
+  for_columns(between, [&](int component, int first, int last, double* work) {
     kernels_.out_along(view, coefficients_of(from, component), first, last, between_[component],
                        work);
   });
@@ -467,7 +467,8 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
   ++counts_.solves;
   std::fill_n(is_still_, 3, true);
   for (const int component : components) is_still_[component] = false;
-  const std::vector<Columns> parts = runs.empty() ? all_columns() : columns_with(runs);
+  const std::vector<Columns> parts =
+      runs.empty() ? std::vector<Columns>{{0, plans_[1].length() - 1}} : columns_with(runs);
   transform_.is_in_pairs = true;
   to_sines(load, &Parity::load, parts);
   const Blocks blocks = moving_blocks();

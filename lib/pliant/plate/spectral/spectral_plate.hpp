@@ -128,11 +128,10 @@ class SpectralPlate {
   int between_width() const;
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3]);
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
-                const std::vector<Columns>& parts);
+                std::span<const Columns> parts);
   void from_sines(double* (Parity::*from)[3], const NodesView& field);
   void from_sines(double* (Parity::*from)[3], const NodesView& field,
-                  const std::vector<Columns>& parts);
-  std::vector<Columns> all_columns() const;
+                  std::span<const Columns> parts);
   std::vector<Columns> columns_with(std::span<const UnknownRun> runs) const;
   bool is_large() const { return long{columns_} * rows_ > 10'000; }
   // Runs tasks that write different numbers. On a small plate they are not worth a thread.
@@ -141,7 +140,7 @@ class SpectralPlate {
     pliant::for_each(is_large() ? context_.threads : nullptr, count, work);
   }
   template <class Work>
-  void for_columns(const std::vector<Columns>& parts, const Work& work);
+  void for_columns(std::span<const Columns> parts, const Work& work);
 
   RunContext context_;
   const PlateKernels& kernels_;
