@@ -26,7 +26,6 @@ Result<void> RefinedFactor::factor(const Eigen::VectorXd& shifts, bool has_same_
 
 // Finds the error of a solution: if it is too large, all are corrected.
 Result<void> RefinedFactor::measure() {
-  is_measured_ = true;
   const SparseMatrix upper = matrix_.shifted(shifts_);
   Field forces = Field::Zero(upper.rows(), 3);
   forces.col(0).head(pressure_.size()) = pressure_;
@@ -40,13 +39,17 @@ Result<void> RefinedFactor::measure() {
   rough.col(0) = forces.col(0) - upper.selfadjointView<Eigen::Upper>() * solution->col(0);
   const auto first = factor_.solve(rough);
   if (!first) return fail(first.error());
-  if (!corrects_ && peak(*first) < 0.5 * largest_error * peak(*solution)) return {};
+  if (!corrects_ && peak(*first) < 0.5 * largest_error * peak(*solution)) {
+    is_measured_ = true;
+    return {};
+  }
   if (auto opened = matrix_.open(); !opened) return opened;
   const Field left = matrix_.residual(shifts_, *solution, forces);
   if (is_stopped(should_stop_)) return interrupted();
   const auto correction = factor_.solve(left);
   if (!correction) return fail(correction.error());
   error_ = peak(*correction) / peak(*solution);
+  is_measured_ = true;
   refines_ = corrects_ || error_ > largest_error;
   if (!refines_) matrix_.close();
   return {};
