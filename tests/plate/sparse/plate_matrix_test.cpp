@@ -83,6 +83,21 @@ TEST_CASE("the residual has digits left where double has none", "[plate][operato
   CHECK((residual(system, w, f).array().abs() <= 1.2e-16 * f.array().abs() + 1e-12).all());
 }
 
+TEST_CASE("an assembly has as many entries as it says, at most", "[plate][operator]") {
+  const Grid open = unit_grid(7, 6);
+  const Grid ring{7, 6, 0.1, 0.2, true};
+  const Edges free = {Edge::Free, Edge::Free, Edge::Pinned, Edge::Clamped};
+  InteriorMask mask(static_cast<std::size_t>(open.node_count()), 0);
+  for (const int node : {8, 9, 10, 15, 16, 22}) mask[static_cast<std::size_t>(node)] = 1;
+  for (const Outline& outline :
+       {Outline(open), Outline(open, free), Outline(open, mask), Outline(ring)}) {
+    const GridAssembly assembly({outline, {1.5, -0.7, 2.25}, 0});
+    const auto entries = assembly.entries().value();
+    CHECK(entries.values.size() <= assembly.most_entries());
+    CHECK(assembly.precise_entries().value().columns == entries.columns);
+  }
+}
+
 TEST_CASE("the condition number is estimated within a factor", "[plate][operator]") {
   const Grid grid = GENERATE(unit_grid(9, 9), unit_grid(17, 6), Grid{9, 9, 0.5, 0.125});
   const double shift = GENERATE(0.0, 1e4);

@@ -422,6 +422,23 @@ TEST_CASE("what steps of triangles learn ends with their frame", "[plate][plasti
   }
 }
 
+TEST_CASE("the pairs of unknowns that are left are those of all blocks", "[plate][morley]") {
+  for (const bool has_quads : {false, true}) {
+    for (const Border border : {Border::Clamped, Border::Pinned, Border::Free}) {
+      const TrianglePatch patch = patch_of(square(7, 1, 0.3, has_quads), 0.42, border);
+      const ReducedUnknowns reduced(patch.cells, patch.free_nodes);
+      std::size_t pairs = 0;
+      CellBlock<double> block;
+      for (int k = 0; k < patch.cells.block_count(); ++k) {
+        block.compute(patch.cells, k, reduced, {});
+        const auto left = static_cast<std::size_t>(block.size() - block.inner_count());
+        pairs += left * (left + 1) / 2;
+      }
+      CHECK(reduced.pairs == pairs);
+    }
+  }
+}
+
 TEST_CASE("triangles flow alike in all directions", "[plate][plastic][morley]") {
   const TrianglePatch patch = patch_of(square(7, 1, 0.3, true), 0.42, Border::Clamped);
   Matrix3d turn;

@@ -33,8 +33,9 @@ std::size_t PlateMatrix::kept_bytes() const {
 
 // Sums entries in the order of the assembly.
 Result<void> PlateMatrix::assemble(const PlateAssembly& assembly) {
-  // Entries, their order, and the matrix, while it is summed and kept.
-  constexpr std::size_t bytes_of_entry = 4 * sizeof(double);
+  // Entries, their order before and after it is sorted, their places, and the matrix twice.
+  constexpr std::size_t bytes_of_entry =
+      sizeof(double) + 2 * sizeof(int) + 3 * sizeof(int) + 2 * (sizeof(double) + sizeof(int));
   assembly_ = &assembly;
   close();
   if (auto taken = take(kept_bytes() + assembly.most_entries() * bytes_of_entry); !taken)

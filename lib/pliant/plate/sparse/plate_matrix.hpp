@@ -49,7 +49,7 @@ class PlateAssembly {
   virtual int size() const = 0;  ///< #unknowns
   virtual PlateWeights weights() const = 0;
 
-  /// At least as many as `entries` has.
+  /// How many `entries` has, or a few more.
   virtual std::size_t most_entries() const = 0;
 
   /// Those of K, the Hessian of the bending energy, in one order for both types. Errors:

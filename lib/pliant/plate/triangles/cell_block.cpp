@@ -25,8 +25,18 @@ ReducedUnknowns::ReducedUnknowns(const TriangleCells& cells, int mass_count)
       has_inner[block] = true;
     }
   }
+  std::fill(owners.begin(), owners.end(), none);  // now the last block of each that is left
   for (int block = 0; block < cells.block_count(); ++block) {
     if (has_inner[block]) blocks.push_back(block);
+    std::size_t left = 0;
+    for (int k = cells.block_starts[block]; k < cells.block_starts[block + 1]; ++k) {
+      for_each_unknown(cells, cells.cells[k], [&](const CellUnknown& unknown) {
+        if (places[unknown.index] < 0 || owners[unknown.index] == block) return;
+        owners[unknown.index] = block;
+        ++left;
+      });
+    }
+    pairs += left * (left + 1) / 2;
   }
 }
 

@@ -14,6 +14,7 @@ struct ReducedUnknowns {
   std::vector<int> places;  ///< of each unknown among those that are not inner; -1: inner
   int count = 0;
   std::vector<int> blocks;  ///< those with inner unknowns, ascending
+  std::size_t pairs = 0;    ///< of unknowns that are left, themselves too, over all blocks
 
   /// Requires: the first `mass_count` points have a mass; they keep their numbers.
   ReducedUnknowns(const TriangleCells& cells, int mass_count);

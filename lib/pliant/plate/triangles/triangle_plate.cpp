@@ -46,22 +46,12 @@ PlateWeights TrianglePlate::weights() const {
   return weights;
 }
 
-std::size_t TrianglePlate::most_entries() const {
-  std::size_t count = 0;
-  for (int block = 0; block < cells_.block_count(); ++block) {
-    // The pairs of at most 6 unknowns of each cell, of which a slope may be a sum of two.
-    const auto size =
-        static_cast<std::size_t>(9 * (cells_.block_starts[block + 1] - cells_.block_starts[block]));
-    count += size * (size + 1) / 2;
-  }
-  return count;
-}
-
 template <class Real>
 Result<Entries<Real>> TrianglePlate::entries_of() const {
   constexpr std::size_t parts_of_entry = 32;
   StopPoll poll(context_.should_stop);
   Entries<Real> entries;
+  entries.reserve(reduced_.pairs);
   CellBlock<Real> block;
   for (int k = 0; k < cells_.block_count(); ++k) {
     block.compute(cells_, k, reduced_, bending_, factors_.get());

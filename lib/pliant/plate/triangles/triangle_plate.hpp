@@ -93,7 +93,7 @@ class TrianglePlate : private PlateAssembly {
 
   int size() const override { return reduced_.count; }
   PlateWeights weights() const override;
-  std::size_t most_entries() const override;
+  std::size_t most_entries() const override { return reduced_.pairs; }
   Result<Entries<double>> entries() const override { return entries_of<double>(); }
   Result<Entries<long double>> precise_entries() const override {
     return entries_of<long double>();
