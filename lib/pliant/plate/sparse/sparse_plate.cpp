@@ -20,8 +20,9 @@ std::vector<double> times(double factor, const Eigen::VectorXd& numbers) {
 
 Result<void> SparsePlate::assemble(const PlateAssembly& assembly) try {
   is_factored_ = false;
+  const bool had_pattern = std::exchange(has_factored_pattern_, false);
   if (auto assembled = matrix_.assemble(assembly); !assembled) return assembled;
-  has_factored_pattern_ = has_factored_pattern_ && matrix_.keeps_pattern();
+  has_factored_pattern_ = had_pattern && matrix_.keeps_pattern();
   weights_ = assembly.weights();
   return {};
 } catch (const std::bad_alloc&) {
