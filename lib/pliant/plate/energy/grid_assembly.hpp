@@ -11,7 +11,7 @@ namespace pliant {
 /// The plate of an outline in a grid. Its K is that of the bending energy, which for even plates
 /// with clamped edges is the stencil's, entry by entry; docs/model.md, "One energy". Internal to
 /// plate.
-class GridAssembly final : public PlateAssembly {
+class GridAssembly final : public PlateAssembly, private DifferenceResidual {
  public:
   /// The system's shift is not read.
   explicit GridAssembly(const PlateSystem& system);
@@ -24,8 +24,7 @@ class GridAssembly final : public PlateAssembly {
   std::size_t most_entries() const override;
   Result<Entries<double>> entries() const override;
   Result<Entries<long double>> precise_entries() const override;
-  bool has_residual() const override { return is_stencil(); }
-  Field residual(const Eigen::VectorXd& shifts, const Field& x, const Field& f) const override;
+  const DifferenceResidual* differences() const override { return is_stencil() ? this : nullptr; }
   bool loses_digits(double shift) const override;
 
   /// The forces on the unknowns by a load (#nodes x 3), the rim's displacement and the tangents.
@@ -34,6 +33,7 @@ class GridAssembly final : public PlateAssembly {
  private:
   static PlateSystem unshifted(PlateSystem system);
   bool is_stencil() const;
+  Field residual(const Eigen::VectorXd& shifts, const Field& x, const Field& f) const override;
   template <class Real>
   StencilTable<Real> table() const;
   template <class Real>

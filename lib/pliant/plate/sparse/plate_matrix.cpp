@@ -87,7 +87,7 @@ SparseMatrix PlateMatrix::shifted(const Eigen::VectorXd& shifts) const {
 }
 
 Result<void> PlateMatrix::open() {
-  if (assembly_->has_residual()) return {};
+  if (assembly_->differences()) return {};
   const auto count = static_cast<std::size_t>(stiffness_.nonZeros());
   const std::size_t kept = kept_bytes() + 2 * count * (sizeof(Extended) + sizeof(int));
   const std::size_t entries = places_.size() * (sizeof(Extended) + 2 * sizeof(int));
@@ -133,7 +133,7 @@ void PlateMatrix::close() {
 }
 
 Field PlateMatrix::residual(const Eigen::VectorXd& shifts, const Field& x, const Field& f) const {
-  if (assembly_->has_residual()) return assembly_->residual(shifts, x, f);
+  if (const auto* own = assembly_->differences()) return own->residual(shifts, x, f);
   PLIANT_EXPECTS(static_cast<Eigen::Index>(precise_.starts.size()) == x.rows() + 1);
   const double* const of_x = x.col(0).data();
   const double* const of_y = x.col(1).data();

@@ -38,6 +38,16 @@ struct PlateWeights {
   Eigen::VectorXd drags;   ///< areas times those of a map of damping
 };
 
+/// What a solution leaves, by differences in extended precision: entries, which are rounded one by
+/// one, lose digits. Internal to plate.
+class DifferenceResidual {
+ public:
+  virtual ~DifferenceResidual() = default;
+
+  /// f - (K + diag(shifts)) x (#unknowns x 3).
+  virtual Field residual(const Eigen::VectorXd& shifts, const Field& x, const Field& f) const = 0;
+};
+
 /// What a plate is made of: a grid of any outline, or triangles. Internal to plate.
 class PlateAssembly {
  public:
@@ -57,15 +67,8 @@ class PlateAssembly {
   virtual Result<Entries<double>> entries() const = 0;
   virtual Result<Entries<long double>> precise_entries() const = 0;
 
-  /// Whether `residual` has its own way, by differences: entries, which are rounded one by one,
-  /// lose digits.
-  virtual bool has_residual() const { return false; }
-
-  /// f - (K + diag(shifts)) x in extended precision. Requires: `has_residual`.
-  virtual Field residual(const Eigen::VectorXd& /*shifts*/, const Field& /*x*/,
-                         const Field& f) const {
-    return f;
-  }
+  /// Null: there are entries only.
+  virtual const DifferenceResidual* differences() const { return nullptr; }
 
   /// Whether solutions of K + shift M are known to need correction.
   virtual bool loses_digits(double /*shift*/) const { return false; }
