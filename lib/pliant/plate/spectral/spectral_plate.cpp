@@ -326,13 +326,14 @@ ComponentView SpectralPlate::component_of(int k, int component) const {
 
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3]) {
   const Columns all[] = {{0, plans_[1].length() - 1}};
-  to_sines(field, to, all);
+  to_sines(field, to, all, false);
 }
 
 // The field is 0 but in these columns.
 void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
-                             std::span<const Columns> parts) {
-  const TransformView view = transform_of(field.row_stride);
+                             std::span<const Columns> parts, bool is_in_pairs) {
+  TransformView view = transform_of(field.row_stride);
+  view.is_in_pairs = is_in_pairs;
   const int count = plans_[1].length() - 1;
   for (int component = 0; component < 3; ++component) {
     if (is_still_[component]) continue;
@@ -360,13 +361,14 @@ void SpectralPlate::to_sines(const ConstNodesView& field, double* (Parity::*to)[
 
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field) {
   const Columns all[] = {{0, plans_[1].length() - 1}};
-  from_sines(from, field, all);
+  from_sines(from, field, all, false);
 }
 
 // Writes the field only in these columns.
 void SpectralPlate::from_sines(double* (Parity::*from)[3], const NodesView& field,
-                               std::span<const Columns> parts) {
-  const TransformView view = transform_of(field.row_stride);
+                               std::span<const Columns> parts, bool is_in_pairs) {
+  TransformView view = transform_of(field.row_stride);
+  view.is_in_pairs = is_in_pairs;
   const Columns between[] = {{0, between_width()}};
   for_columns(between, [&](int component, int first, int last, double* work) {
     kernels_.out_along(view, coefficients_of(from, component), first, last, between_[component],
@@ -469,8 +471,7 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
   for (const int component : components) is_still_[component] = false;
   const std::vector<Columns> parts =
       runs.empty() ? std::vector<Columns>{{0, plans_[1].length() - 1}} : columns_with(runs);
-  transform_.is_in_pairs = true;
-  to_sines(load, &Parity::load, parts);
+  to_sines(load, &Parity::load, parts, true);
   const Blocks blocks = moving_blocks();
   for_each(blocks.count, [&](std::size_t task) {
     const auto [k, index] = blocks.all[task];
@@ -479,8 +480,7 @@ void SpectralPlate::solve_for(const std::vector<int>& components, const ConstNod
     component.pending = component.displacement = component.load;
     kernels_.solve(view_of(k), component);
   });
-  from_sines(&Parity::load, solution, parts);
-  transform_.is_in_pairs = false;
+  from_sines(&Parity::load, solution, parts, true);
 }
 
 bool SpectralPlate::advance(const ConstNodesView& load, double inertia, const TimeSteps& steps,

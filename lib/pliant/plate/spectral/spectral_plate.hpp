@@ -128,10 +128,10 @@ class SpectralPlate {
   int between_width() const;
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3]);
   void to_sines(const ConstNodesView& field, double* (Parity::*to)[3],
-                std::span<const Columns> parts);
+                std::span<const Columns> parts, bool is_in_pairs);
   void from_sines(double* (Parity::*from)[3], const NodesView& field);
   void from_sines(double* (Parity::*from)[3], const NodesView& field,
-                  std::span<const Columns> parts);
+                  std::span<const Columns> parts, bool is_in_pairs);
   std::vector<Columns> columns_with(std::span<const UnknownRun> runs) const;
   bool is_large() const { return long{columns_} * rows_ > 10'000; }
   // Runs tasks that write different numbers. On a small plate they are not worth a thread.
