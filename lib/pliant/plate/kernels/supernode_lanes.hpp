@@ -258,14 +258,23 @@ PLIANT_INLINE void subtract_above(typename N::Line (&sums)[Rows],
 
 // Own rows `first` to `first + Rows - 1`, of which `lower` has the first one's entries of L.
 template <class N, int Rows>
-PLIANT_INLINE void solve_own(const double* lower, int first, double* own) {
-  typename N::Line sums[Rows];
+struct OwnRows {
+  typename N::Line lines[Rows];
   const double* entries[Rows];
+
+  PLIANT_INLINE OwnRows(const double* lower, int first, const double* own) {
 #pragma GCC unroll 4
-  for (int r = 0; r < Rows; ++r) {
-    sums[r] = N::load_line(own, first + r);
-    entries[r] = lower + N::width * (r * first + r * (r - 1) / 2);
+    for (int r = 0; r < Rows; ++r) {
+      lines[r] = N::load_line(own, first + r);
+      entries[r] = lower + N::width * (r * first + r * (r - 1) / 2);
+    }
   }
+};
+
+template <class N, int Rows>
+PLIANT_INLINE void solve_own(const double* lower, int first, double* own) {
+  OwnRows<N, Rows> rows(lower, first, own);
+  auto& [sums, entries] = rows;
   subtract_above<N, Rows>(sums, entries, own, first);
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
@@ -323,17 +332,12 @@ PLIANT_INLINE void subtract_below(const double* entries, int columns, int count,
   }
 }
 
-// Own rows `first` to `first + Rows - 1`, from which all later ones are subtracted: finds them, and
-// subtracts them from those before.
+// Own rows from which all later ones are subtracted: finds them, and subtracts them from those
+// before.
 template <class N, int Rows>
 PLIANT_INLINE void solve_own_back(const double* lower, int first, double* own) {
-  typename N::Line found[Rows];
-  const double* entries[Rows];
-#pragma GCC unroll 4
-  for (int r = 0; r < Rows; ++r) {
-    found[r] = N::load_line(own, first + r);
-    entries[r] = lower + N::width * (r * first + r * (r - 1) / 2);
-  }
+  OwnRows<N, Rows> rows(lower, first, own);
+  auto& [found, entries] = rows;
 #pragma GCC unroll 4
   for (int r = Rows - 1; r >= 0; --r) {
 #pragma GCC unroll 4
