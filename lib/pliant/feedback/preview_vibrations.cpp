@@ -77,9 +77,7 @@ Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, con
     const NodeFactors* const factors = shape_.factors.get();
     TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), context_,
                         factors_of(*shape_.surface, plan.surface->level_set, patch, factors));
-    const Border border = body_settings(surface_, false).border;
-    return smallest_eigenvalue(plate, bending_of(inputs, shape_.surface->unit, border),
-                               patch.is_held());
+    return smallest_eigenvalue(plate, response_.bending_at(inputs), patch.is_held());
   };
   const auto lambda = smallest();
   if (!lambda) return fail(lambda.error());
@@ -145,8 +143,7 @@ Result<MovingRegion> PreviewBody::triangle_vibrations(const BodyInputs& inputs,
   if (known) return moving_as(*known, inputs, std::move(region));
   if (patch.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
   const NodeFactors* const factors = shape_.factors.get();
-  const Border border = body_settings(surface_, false).border;
-  const Bending bending = bending_of(inputs, shape_.surface->unit, border);
+  const Bending bending = response_.bending_at(inputs);
   // Shapes that are found for an animation of the same load are those of the vibrations too.
   const bool is_elastic = !surface_.material.yield && is_plain(surface_);
   auto* const responding = is_elastic ? response_.patch_of(inputs, selection, k) : nullptr;

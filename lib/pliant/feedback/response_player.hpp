@@ -54,11 +54,13 @@ class ResponsePlayer {
   /// Its space, ready to be extended. Requires: it has a pattern. Errors: those of the solver.
   Result<ResponseSpace*> space_of(Patch& patch);
 
+  /// The form of the surface's plates. Requires: it is of triangles.
+  Bending bending_at(const BodyInputs& inputs) const;
+
   double cost() const { return cost_; }  ///< of the last peaks, in steps of nodes
 
  private:
   bool is_for_surface() const;
-  Bending bending_at(const BodyInputs& inputs) const;
   bool has_patches(const TriangleSelection& selection, const Bending& bending) const;
   void begin(const TriangleSelection& selection, const Bending& bending);
   Result<bool> add(const BodyInputs& inputs, const StepPlan& plan);
