@@ -4,7 +4,6 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
-#include "pliant/plate/sparse/supernodal_factor.hpp"
 
 namespace pliant {
 

@@ -1,5 +1,3 @@
-#include "pliant/plate/sparse/supernodal_factor.hpp"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -17,6 +15,7 @@
 
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
+#include "pliant/plate/sparse/sparse_factor.hpp"
 #include "pliant/plate/sparse/supernode_pattern.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"

@@ -14,7 +14,7 @@
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/exact/substeps.hpp"
 #include "pliant/plate/solver_choice.hpp"
-#include "pliant/plate/sparse/supernodal_factor.hpp"
+#include "pliant/plate/sparse/supernodal_numbers.hpp"
 #include "pliant/plate/time_steps.hpp"
 
 namespace pliant {

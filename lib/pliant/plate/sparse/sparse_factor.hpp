@@ -47,10 +47,12 @@ class SparseFactor {
   virtual bool share(const SparseFactor&) { return false; }
 };
 
+/// `SupernodalNumbers` of a real matrix.
+std::unique_ptr<SparseFactor> make_supernodal_factor(const RunContext& context);
 std::unique_ptr<SparseFactor> make_cholmod_factor();
 std::unique_ptr<SparseFactor> make_eigen_factor();
 
-/// One of these, or that of supernodal_factor.hpp. Requires: it is available.
+/// One of these. Requires: it is available.
 std::unique_ptr<SparseFactor> make_sparse_factor(SolverChoice choice,
                                                  const RunContext& context = {});
 

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/exact/pade.hpp"
 #include "pliant/plate/kernels/kernels.hpp"
 #include "pliant/plate/number_block.hpp"
-#include "pliant/plate/sparse/sparse_factor.hpp"
 #include "pliant/plate/sparse/supernode_pattern.hpp"
 
 namespace pliant {
@@ -53,8 +53,5 @@ class SupernodalNumbers {
 
 extern template class SupernodalNumbers<double>;
 extern template class SupernodalNumbers<Complex>;
-
-/// That of a real matrix.
-std::unique_ptr<SparseFactor> make_supernodal_factor(const RunContext& context);
 
 }  // namespace pliant
