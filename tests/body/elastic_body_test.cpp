@@ -1,0 +1,144 @@
+#include "pliant/body/elastic_body.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "body/sheets.hpp"
+#include "pliant/body/triangle_body.hpp"
+#include "support/catch.hpp"
+#include "support/meshes.hpp"
+#include "support/sanitized.hpp"
+
+using namespace pliant;
+using namespace pliant::testing;
+
+namespace {
+
+// A body of one kind, and the length of its surface's side.
+struct SurfaceKind {
+  std::string name;
+  double side;
+  std::function<std::unique_ptr<Body>(const BodySettings&, const RunContext&)> make;
+};
+
+std::vector<SurfaceKind> kinds() {
+  const auto sheet = std::make_shared<const NodeSheet>(hilly_sheet(17, 15));
+  const auto surface =
+      std::make_shared<const TriangleSurface>(make_surface(square(11, 1, 0.3, true)).value());
+  return {{"a grid", 14,
+           [=](const BodySettings& settings, const RunContext& context) {
+             return std::make_unique<GridBody>(sheet->grid, sheet->rest, settings,
+                                               SolverChoice::Auto, context);
+           }},
+          {"triangles", 1, [=](const BodySettings& settings, const RunContext& context) {
+             return std::make_unique<TriangleBody>(surface, settings, SolverChoice::Auto, context);
+           }}};
+}
+
+std::vector<std::pair<std::string, BodySettings>> settings_of_each_kind_of_state() {
+  std::vector<std::pair<std::string, BodySettings>> all;
+  all.emplace_back("plain", BodySettings{});
+  all.emplace_back("islands that recover", BodySettings{});
+  all.back().second.combine = Combine::Islands;
+  all.back().second.release = Release::Recover;
+  all.emplace_back("newmark", BodySettings{});
+  all.back().second.integrator = Integrator::Newmark;
+  all.emplace_back("exact", BodySettings{});
+  all.back().second.integrator = Integrator::Exact;
+  all.emplace_back("yields", BodySettings{});
+  all.back().second.yields = true;
+  all.emplace_back("whole", BodySettings{});
+  all.back().second.region = SolvedRegion::All;
+  for (auto& [name, settings] : all) settings.measure = Measure::Rest;
+  return all;
+}
+
+// Regions that stay, slide, are two, and vanish for a while.
+BodyInputs inputs_at(int frame, const SurfaceKind& kind, const BodySettings& settings) {
+  const double radius = 0.3 * kind.side;
+  const double x = (frame < 3 ? 0 : 0.03 * (frame - 3)) * kind.side;
+  std::vector<SampledForce> forces;
+  if (frame < 5 || frame > 7) {
+    forces.push_back(press(x, 0, 5 / (kind.side * kind.side), radius));
+    if (frame > 9) forces.push_back(press(-0.35 * kind.side, 0.1 * kind.side, 2, 0.5 * radius));
+  }
+  BodyInputs inputs = inputs_of(std::move(forces));
+  const double scale = kind.side * kind.side * kind.side * kind.side;  // of 1/L
+  inputs.dynamics = {0.002 * scale, 0.01 * scale};
+  inputs.tangents.su0 = {0, 0.1 * frame, 0};
+  if (settings.yields) inputs.law = PlasticLaw{0.01, 0.2};
+  return inputs;
+}
+
+constexpr int frames_stepped = 13;
+
+template <class F>
+void for_each_body(const F& f) {
+  for (const SurfaceKind& kind : kinds()) {
+    for (const auto& [name, settings] : settings_of_each_kind_of_state()) {
+      CAPTURE(kind.name, name);
+      f(kind, settings);
+    }
+  }
+}
+
+// The states before the first frame and after each.
+std::vector<BodyState> states_of(const SurfaceKind& kind, const BodySettings& settings) {
+  const auto body = kind.make(settings, {});
+  std::vector<BodyState> states = {body->state()};
+  for (int frame = 0; frame < frames_stepped; ++frame) {
+    REQUIRE(body->step(inputs_at(frame, kind, settings)));
+    states.push_back(body->state());
+  }
+  CHECK(peak_of(*body) > 0);
+  return states;
+}
+
+}  // namespace
+
+TEST_CASE("a body goes on from any state, whatever it has done before", "[body]") {
+  for_each_body([](const SurfaceKind& kind, const BodySettings& settings) {
+    const std::vector<BodyState> states = states_of(kind, settings);
+    const auto used = kind.make(settings, {});
+    for (const int first : {7, 0, 11, 3, 10}) {
+      CAPTURE(first);
+      const auto fresh = kind.make(settings, {});
+      for (Body* const body : {used.get(), fresh.get()}) {
+        body->restore(states[static_cast<std::size_t>(first)]);
+        for (int frame = first; frame < std::min(frames_stepped, first + 3); ++frame) {
+          REQUIRE(body->step(inputs_at(frame, kind, settings)));
+          CHECK(body->state() == states[static_cast<std::size_t>(frame) + 1]);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("a frame that is stopped changes nothing, and can be done again", "[body]") {
+  for_each_body([](const SurfaceKind& kind, const BodySettings& settings) {
+    const std::vector<BodyState> states = states_of(kind, settings);
+    int asked = 0, patience = 1'000'000;
+    const RunContext context{.should_stop = [&] { return ++asked > patience; }};
+    const auto body = kind.make(settings, context);
+    for (int frame = 0; frame < frames_stepped; ++frame) {
+      const BodyInputs inputs = inputs_at(frame, kind, settings);
+      const BodyState& before = states[static_cast<std::size_t>(frame)];
+      bool is_done = false;
+      for (int stop_at = 1; !is_done; stop_at += is_sanitized ? 1 + stop_at : 1 + stop_at / 4) {
+        CAPTURE(frame, stop_at);
+        asked = 0;
+        patience = stop_at - 1;
+        const auto stepped = body->step(inputs);
+        is_done = stepped.has_value();
+        if (is_done) break;
+        CHECK(stepped.error().code == ErrorCode::Interrupted);
+        CHECK(body->state() == before);
+      }
+      CHECK(body->state() == states[static_cast<std::size_t>(frame) + 1]);
+    }
+  });
+}
