@@ -68,7 +68,7 @@ class Body {
   virtual Result<StepPlan> look(const BodyInputs& inputs) const = 0;
 
   /// The same in less time if `earlier`, a plan of this body or an empty one, has the same patches.
-  virtual Result<StepPlan> look_again(const BodyInputs& inputs, StepPlan /*earlier*/) const {
+  virtual Result<StepPlan> look_again(const BodyInputs& inputs, StepPlan&& /*earlier*/) const {
     return look(inputs);
   }
 

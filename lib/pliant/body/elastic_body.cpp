@@ -114,8 +114,9 @@ void ElasticBody::begin_load(BodyPatch& one) const {
   interval.first_load = interval.load;
   for (const RowRun& run : one.nodes) {
     for (int k = 0; k < run.count; ++k) {
-      if (state_.last.unknowns[static_cast<std::size_t>(run.node + k)])
-        interval.first_load.row(run.row + k) = state_.last.loads.row(run.node + k);
+      const int node = run.node + k;
+      if (state_.last.unknowns[static_cast<std::size_t>(node)])
+        interval.first_load.row(run.row + k) = state_.last.loads.row(node);
     }
   }
 }

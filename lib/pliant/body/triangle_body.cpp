@@ -120,7 +120,7 @@ SolverCounts TriangleBody::solver_counts() const {
 }
 
 // Patches that stay need not be cut out again.
-Result<StepPlan> TriangleBody::look_again(const BodyInputs& inputs, StepPlan earlier) const {
+Result<StepPlan> TriangleBody::look_again(const BodyInputs& inputs, StepPlan&& earlier) const {
   if (auto planned = plan(inputs, earlier); !planned) return fail(planned.error());
   return earlier;
 }
@@ -298,7 +298,7 @@ void TriangleBody::take_material(const BodyInputs& inputs, std::size_t k) {
 Result<double> TriangleBody::smallest_eigenvalue_of(std::size_t k) {
   Solve& one = solves_[k];
   if (!one.lambda || one.bending != one.problem.bending) {
-    const auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, one.is_held);
+    auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, one.is_held);
     if (!lambda) return lambda;
     one.lambda = *lambda;
     one.bending = one.problem.bending;

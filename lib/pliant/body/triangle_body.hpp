@@ -45,9 +45,9 @@ class TriangleBody final : public ElasticBody {
                std::shared_ptr<const NodeFactors> factors);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override {
-    return look_again(inputs, plan_);
+    return look_again(inputs, StepPlan(plan_));
   }
-  Result<StepPlan> look_again(const BodyInputs& inputs, StepPlan earlier) const override;
+  Result<StepPlan> look_again(const BodyInputs& inputs, StepPlan&& earlier) const override;
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
     return plan.surface->forces[force].push;
   }

@@ -127,6 +127,10 @@ struct ComplexNumbers {
   }
 };
 
+// Doubles of a column of a panel.
+template <class N>
+constexpr long column_length = long{panel_rows} * N::width;
+
 // Columns `first` to `first + Columns - 1` of `Panels` panels.
 template <class N, int Columns, int Panels>
 PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* lower, int first,
@@ -140,15 +144,13 @@ PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* low
   for (int p = 0; p < Panels; ++p) {
 #pragma GCC unroll 4
     for (int j = 0; j < Columns; ++j)
-      sums[p][j] = N::load_column(panels + p * stride +
-                                  static_cast<long>(first + j) * (N::width * panel_rows));
+      sums[p][j] = N::load_column(panels + p * stride + (first + j) * column_length<N>);
   }
   const int common = first < depth ? first : depth;
   for (int k = 0; k < common; ++k) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p) {
-      const auto column =
-          N::load_column(panels + p * stride + static_cast<long>(k) * (N::width * panel_rows));
+      const auto column = N::load_column(panels + p * stride + k * column_length<N>);
 #pragma GCC unroll 4
       for (int j = 0; j < Columns; ++j) subtract(sums[p][j], column, N::entry(of_column[j], k));
     }
@@ -168,8 +170,7 @@ PLIANT_INLINE void reduce_columns(double* panels, long stride, const double* low
   for (int p = 0; p < Panels; ++p) {
 #pragma GCC unroll 4
     for (int j = 0; j < Columns; ++j)
-      N::store_column(panels + p * stride + static_cast<long>(first + j) * (N::width * panel_rows),
-                      sums[p][j]);
+      N::store_column(panels + p * stride + (first + j) * column_length<N>, sums[p][j]);
   }
 }
 
@@ -201,20 +202,18 @@ template <class N, int Rows, int Panels>
 PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int panel) {
   const double* const panels = view.panels + panel * view.panel_stride;
   const double* const of_l = view.of_l + static_cast<long>(row) * (N::width * view.columns);
-  double* const to =
-      view.rows + row * view.stride + static_cast<long>(panel) * (N::width * panel_rows);
+  double* const to = view.rows + row * view.stride + panel * column_length<N>;
   typename N::Column sums[Rows][Panels];
 #pragma GCC unroll 4
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p)
-      sums[r][p] = N::load_column(to + r * view.stride + p * (N::width * panel_rows));
+      sums[r][p] = N::load_column(to + r * view.stride + p * column_length<N>);
   }
   for (int k = 0; k < view.columns; ++k) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p) {
-      const auto column = N::load_column(panels + p * view.panel_stride +
-                                         static_cast<long>(k) * (N::width * panel_rows));
+      const auto column = N::load_column(panels + p * view.panel_stride + k * column_length<N>);
 #pragma GCC unroll 4
       for (int r = 0; r < Rows; ++r)
         subtract(sums[r][p], column, N::entry(of_l, static_cast<long>(r) * view.columns + k));
@@ -224,7 +223,7 @@ PLIANT_INLINE void subtract_some_products(const ProductsView& view, int row, int
   for (int r = 0; r < Rows; ++r) {
 #pragma GCC unroll 4
     for (int p = 0; p < Panels; ++p)
-      N::store_column(to + r * view.stride + p * (N::width * panel_rows), sums[r][p]);
+      N::store_column(to + r * view.stride + p * column_length<N>, sums[r][p]);
   }
 }
 
@@ -310,7 +309,7 @@ PLIANT_INLINE void subtract_below(const double* entries, int columns, int count,
 #pragma GCC unroll 4
     for (int n = 0; n < Sums; ++n) {
       const auto below = N::load_line(x, rows[i + n]);
-      const double* const of_row = entries + static_cast<long>(i + n) * (N::width * columns);
+      const double* const of_row = entries + (static_cast<long>(i) + n) * (N::width * columns);
 #pragma GCC unroll 8
       for (int column = 0; column < Columns; ++column)
         subtract(sums[n][column], below, N::entry(of_row, column));

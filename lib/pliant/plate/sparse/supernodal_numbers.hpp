@@ -28,7 +28,7 @@ class SupernodalNumbers {
  public:
   /// Doubles of a row that is solved: the three right-hand sides, and one that pads them; of
   /// complex ones first their real parts.
-  static constexpr int line = row_numbers * static_cast<int>(sizeof(Number) / sizeof(double));
+  static constexpr int line = row_numbers * (std::is_same_v<Number, double> ? 1 : 2);
 
   /// Of one factor with its pattern's numbers, and what making it takes for a while. [bytes]
   static std::size_t bytes(const SupernodePattern& pattern);
