@@ -242,6 +242,18 @@ void subtract_products(const ProductsView& view) {
   for (int row = 0; row < view.count; ++row) subtract_products_of<N, 1>(view, row);
 }
 
+// Asks for so many numbers of L that are `distance` from these. A solve asks for as many as it
+// uses, forward behind them and backward before them, since what it comes to next is not the next
+// line for a processor to guess: rows are used side by side, and supernodes from the last to the
+// first.
+constexpr long prefetch_distance = 1024;  // [doubles]; from 512 to 2048 are as fast
+template <int Numbers>
+PLIANT_INLINE void prefetch(const double* entries, long distance) {
+  constexpr int of_line = 8;
+#pragma GCC unroll 8
+  for (int k = 0; k < Numbers; k += of_line) __builtin_prefetch(entries + distance + k);
+}
+
 // Subtracts from `Rows` rows of L, which begin at `entries`, what `columns` rows of x above have
 // for them.
 template <class N, int Rows>
@@ -250,6 +262,7 @@ PLIANT_INLINE void subtract_above(typename N::Line (&sums)[Rows],
                                   int columns) {
   for (int column = 0; column < columns; ++column) {
     const auto above = N::load_line(x, column);
+    prefetch<N::width * Rows>(entries[0] + column * (N::width * Rows), prefetch_distance);
 #pragma GCC unroll 8
     for (int r = 0; r < Rows; ++r) subtract(sums[r], above, N::entry(entries[r], column));
   }
@@ -299,35 +312,53 @@ PLIANT_INLINE void solve_below(const double* entries, int columns, const double*
   for (int r = 0; r < Rows; ++r) N::store_line(x, rows[r], sums[r]);
 }
 
-// Subtracts from `Columns` own rows what the rows below have for them, in `Sums` sums each.
+// Subtracts from the own rows, which are `Columns`, what the rows below have for them, in `Sums`
+// sums each.
 template <class N, int Columns, int Sums>
-PLIANT_INLINE void subtract_below(const double* entries, int columns, int count, const int* rows,
+PLIANT_INLINE void subtract_below(const double* entries, int count, const int* rows,
                                   const double* x, double* own) {
   typename N::Line sums[Sums][Columns] = {};
-  int i = 0;
-  for (; i + Sums <= count; i += Sums) {
-#pragma GCC unroll 4
-    for (int n = 0; n < Sums; ++n) {
-      const auto below = N::load_line(x, rows[i + n]);
-      const double* const of_row = entries + (static_cast<long>(i) + n) * (N::width * columns);
-#pragma GCC unroll 8
-      for (int column = 0; column < Columns; ++column)
-        subtract(sums[n][column], below, N::entry(of_row, column));
-    }
-  }
-  for (; i < count; ++i) {
-    const auto below = N::load_line(x, rows[i]);
-    const double* const of_row = entries + static_cast<long>(i) * (N::width * columns);
+  const auto subtract_row = [&](int n, int row) PLIANT_INLINED {
+    const auto below = N::load_line(x, rows[row]);
+    const double* const of_row = entries + static_cast<long>(row) * (N::width * Columns);
 #pragma GCC unroll 8
     for (int column = 0; column < Columns; ++column)
-      subtract(sums[0][column], below, N::entry(of_row, column));
+      subtract(sums[n][column], below, N::entry(of_row, column));
+  };
+  int end = count;
+  for (; end >= Sums; end -= Sums) {
+    const double* const first = entries + (static_cast<long>(end) - Sums) * (N::width * Columns);
+    prefetch<N::width * Sums * Columns>(first, -prefetch_distance);
+#pragma GCC unroll 4
+    for (int n = 0; n < Sums; ++n) subtract_row(n, end - 1 - n);
   }
+  for (; end > 0; --end) subtract_row(0, end - 1);
 #pragma GCC unroll 8
   for (int column = 0; column < Columns; ++column) {
     auto sum = sums[0][column];
 #pragma GCC unroll 4
     for (int n = 1; n < Sums; ++n) sum = sum + sums[n][column];
     N::store_line(own, column, N::load_line(own, column) + sum);
+  }
+}
+
+// Subtracts from the own rows what `Rows` rows below have for them.
+template <class N, int Rows>
+PLIANT_INLINE void subtract_rows_below(const double* entries, int columns, const int* rows,
+                                       const double* x, double* own) {
+  typename N::Line below[Rows];
+  const double* of_row[Rows];
+#pragma GCC unroll 8
+  for (int r = 0; r < Rows; ++r) {
+    below[r] = N::load_line(x, rows[r]);
+    of_row[r] = entries + static_cast<long>(r) * (N::width * columns);
+  }
+  for (int column = 0; column < columns; ++column) {
+    auto sum = N::load_line(own, column);
+    prefetch<N::width * Rows>(entries + column * (N::width * Rows), -prefetch_distance);
+#pragma GCC unroll 8
+    for (int r = 0; r < Rows; ++r) subtract(sum, below[r], N::entry(of_row[r], column));
+    N::store_line(own, column, sum);
   }
 }
 
@@ -389,23 +420,58 @@ void solve_backward(const SupernodesView& factor, int supernode, double* x) {
   const double* const below = lower + lower_entries<N>(columns);
   double* const own = x + static_cast<long>(node.first) * (N::width * row_numbers);
   const int* const rows = factor.rows + node.rows_at;
+  if (supernode > 0) {
+    const Supernode& before = factor.supernodes[supernode - 1];
+    const double* const end = lower;
+    const double* from = factor.entries + N::width * before.entries_at;
+    if (end - from > 2048) from = end - 2048;
+    for (; from < end; from += 8) __builtin_prefetch(from);
+    const int* const before_rows = factor.rows + before.rows_at;
+    for (int k = 0; k < before.rows; ++k)
+      __builtin_prefetch(x + static_cast<long>(before_rows[k]) * (N::width * row_numbers));
+  }
   for (int row = 0; row < columns; ++row)
     N::store_line(own, row, N::over(N::load_line(own, row), factor.pivots, node.first + row));
-  const auto subtract_from = [&]<int Columns, int Sums>(int column) PLIANT_INLINED {
-    subtract_below<N, Columns, Sums>(below + N::width * column, columns, node.rows, rows, x,
-                                     own + column * (N::width * row_numbers));
+  const auto subtract_all = [&]<int Columns, int Sums>() PLIANT_INLINED {
+    subtract_below<N, Columns, Sums>(below, node.rows, rows, x, own);
   };
-  int column = 0;
-  for (; column + 8 <= columns; column += 8) subtract_from.template operator()<8, 1>(column);
-  if (column + 4 <= columns) {
-    subtract_from.template operator()<4, 1>(column);
-    column += 4;
+  const auto subtract_rows = [&]<int Rows>(int first) PLIANT_INLINED {
+    subtract_rows_below<N, Rows>(below + static_cast<long>(first) * (N::width * columns), columns,
+                                 rows + first, x, own);
+  };
+  // Few own rows are kept in registers, of many the rows below.
+  switch (columns) {
+    case 1:
+      subtract_all.template operator()<1, 4>();
+      break;
+    case 2:
+      subtract_all.template operator()<2, 4>();
+      break;
+    case 3:
+      subtract_all.template operator()<3, 2>();
+      break;
+    case 4:
+      subtract_all.template operator()<4, 2>();
+      break;
+    case 5:
+      subtract_all.template operator()<5, 1>();
+      break;
+    case 6:
+      subtract_all.template operator()<6, 1>();
+      break;
+    case 7:
+      subtract_all.template operator()<7, 1>();
+      break;
+    case 8:
+      subtract_all.template operator()<8, 1>();
+      break;
+    default: {
+      int end = node.rows;
+      for (; end >= 8; end -= 8) subtract_rows.template operator()<8>(end - 8);
+      for (; end >= 4; end -= 4) subtract_rows.template operator()<4>(end - 4);
+      for (; end > 0; --end) subtract_rows.template operator()<1>(end - 1);
+    }
   }
-  if (column + 2 <= columns) {
-    subtract_from.template operator()<2, 2>(column);
-    column += 2;
-  }
-  if (column < columns) subtract_from.template operator()<1, 4>(column);
   int row = columns;
   for (; row >= 4; row -= 4) solve_own_back<N, 4>(lower + lower_entries<N>(row - 4), row - 4, own);
   for (; row > 0; --row) solve_own_back<N, 1>(lower + lower_entries<N>(row - 1), row - 1, own);
