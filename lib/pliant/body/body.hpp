@@ -53,6 +53,8 @@ Dynamics acting_dynamics(const Dynamics& dynamics, const NodeFactors* factors);
 TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
                    const NodeFactors* factors = nullptr);
 
+class PatchPlate;
+
 /// One elastic surface: its state, and one frame's step. Thesis 5.3; SPEC 6.
 class Body {
  public:
@@ -83,6 +85,15 @@ class Body {
 
   /// The effect of a force, by its index in the inputs, in the step that `plan` plans for them.
   virtual Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const = 0;
+
+  /// The nodes that each patch of a region moves, in the order of the unknowns of its plate. Each
+  /// patch of a surface of triangles is a region. Requires: the plan solves it.
+  virtual std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
+                                                    std::size_t region) const = 0;
+
+  /// One of these patches by itself.
+  virtual std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,
+                                               std::size_t region, std::size_t patch) const = 0;
 
   virtual SolverCounts solver_counts() const = 0;
 

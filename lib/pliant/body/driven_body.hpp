@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pliant/body/body.hpp"
+#include "pliant/body/patch_plate.hpp"
 
 namespace pliant {
 
@@ -13,6 +14,13 @@ class DrivenBody final : public Body {
   Result<void> step(const BodyInputs&) override { return {}; }
   const StepPlan& last_step() const override { return no_step_; }
   Push push_of(const BodyInputs&, const StepPlan&, std::size_t) const override { return {}; }
+  std::vector<std::vector<int>> moved_nodes(const StepPlan&, std::size_t) const override {
+    return {};
+  }
+  std::unique_ptr<PatchPlate> plate_of(const BodyInputs&, const StepPlan&, std::size_t,
+                                       std::size_t) const override {
+    return nullptr;
+  }
   SolverCounts solver_counts() const override { return {}; }
 
  private:

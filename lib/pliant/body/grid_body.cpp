@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "pliant/body/patch_plate.hpp"
 #include "pliant/body/recovery.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/region/closed_boxes.hpp"
@@ -24,14 +25,13 @@ bool is_outline_of(const Outline& outline, const Patch& patch) {
          outline.edges() == Outline(grid, patch.edges).edges();
 }
 
-}  // namespace
-
 // A patch with a mask has clamped edges.
 Outline outline_of(const Grid& grid, const Patch& patch) {
   if (!patch.interior.empty()) return {patch.grid(grid), patch.interior};
   return {patch.grid(grid), patch.edges};
 }
 
+// The factors of the grid's nodes on those of a patch's box, in their order. Null stays null.
 std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& patch,
                                               const std::shared_ptr<const NodeFactors>& factors) {
   if (!factors || patch.box == grid.box()) return factors;
@@ -52,10 +52,33 @@ std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& pat
   return std::make_shared<const NodeFactors>(std::move(part));
 }
 
+// Poisson's ratio of a patch's plate: 0 where it has no effect.
 double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactors* factors) {
   const bool acts = patch.edges.have_free() || (factors && factors->have_stiffness()) || inputs.law;
   return acts ? inputs.poisson : 0;
 }
+
+class GridPatchPlate final : public PatchPlate {
+ public:
+  GridPatchPlate(PlateSystem system, bool is_rectangle, const RunContext& context)
+      : system_(std::move(system)),
+        is_rectangle_(is_rectangle),
+        solver_(make_plate_solver(SolverChoice::Auto, context)) {}
+
+  bool is_rectangle() const override { return is_rectangle_; }
+  Result<VibratingPlate> vibrating() override { return pliant::vibrating(*solver_, system_); }
+  Result<double> smallest_eigenvalue() override {
+    return pliant::smallest_eigenvalue(*solver_, system_);
+  }
+  std::size_t memory() const override { return solver_->memory(); }
+
+ private:
+  PlateSystem system_;
+  bool is_rectangle_;
+  std::unique_ptr<PlateSolver> solver_;
+};
+
+}  // namespace
 
 GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
                    RunContext context, std::shared_ptr<const NodeFactors> factors)
@@ -78,6 +101,29 @@ Push GridBody::push_of(const BodyInputs& inputs, const StepPlan& plan, std::size
   return pliant::push_of(grid_, {measured(inputs, room), inputs.transform, densities()},
                          inputs.forces[force], plan.selection.forces[force].force,
                          plan.selection.patches_of_force(force));
+}
+
+std::vector<std::vector<int>> GridBody::moved_nodes(const StepPlan& plan,
+                                                    std::size_t region) const {
+  std::vector<std::vector<int>> all;
+  for (const Patch& patch : plan.selection.regions[region].patches) {
+    std::vector<int>& nodes = all.emplace_back();
+    const Box& box = patch.box;
+    outline_of(grid_, patch).for_each_run([&](const Outline::Run& run) {
+      for (int i = run.i0; i <= run.i1; ++i)
+        nodes.push_back(grid_.node_round(box.i0 + i, box.j0 + run.j));
+    });
+  }
+  return all;
+}
+
+std::unique_ptr<PatchPlate> GridBody::plate_of(const BodyInputs& inputs, const StepPlan& plan,
+                                               std::size_t region, std::size_t patch) const {
+  const Patch& one = plan.selection.regions[region].patches[patch];
+  PlateSystem system{outline_of(grid_, one), inputs.stiffness, 0};
+  system.poisson = poisson_of(inputs, one, factors_.get());
+  system.factors = factors_on(grid_, one, factors_);
+  return std::make_unique<GridPatchPlate>(std::move(system), one.is_rectangle(), context_);
 }
 
 Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const {

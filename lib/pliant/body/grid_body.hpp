@@ -12,16 +12,6 @@
 
 namespace pliant {
 
-/// The outline of a patch's plate, in a grid.
-Outline outline_of(const Grid& grid, const Patch& patch);
-
-/// The factors of the grid's nodes on those of a patch's box, in their order. Null stays null.
-std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& patch,
-                                              const std::shared_ptr<const NodeFactors>& factors);
-
-/// Poisson's ratio of a patch's plate: 0 where it has no effect.
-double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactors* factors);
-
 /// One elastic surface as a grid of nodes. Its step allocates nothing while the regions stay the
 /// same, plates are solved in sine space, no node recovers and the grid is open. Thesis 5.3;
 /// SPEC 6.
@@ -37,6 +27,10 @@ class GridBody final : public ElasticBody {
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 
   Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const override;
+  std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
+                                            std::size_t region) const override;
+  std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,
+                                       std::size_t region, std::size_t patch) const override;
   SolverCounts solver_counts() const override { return solvers_.counts(); }
 
   const Grid& grid() const { return grid_; }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "pliant/body/patch_plate.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/vibration.hpp"
 
@@ -60,6 +61,9 @@ std::vector<double> means_on_triangles(const TriangleSurface& surface,
   return means;
 }
 
+namespace {
+
+// The factors of a patch's plate. Null: the material is even.
 std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
                                               const LevelSet& level_set, const TrianglePatch& patch,
                                               const NodeFactors* factors) {
@@ -98,6 +102,26 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   return std::make_shared<const CellFactors>(std::move(own));
 }
 
+class TrianglePatchPlate final : public PatchPlate {
+ public:
+  TrianglePatchPlate(std::unique_ptr<TrianglePlate> plate, const Bending& bending, bool is_held)
+      : plate_(std::move(plate)), bending_(bending), is_held_(is_held) {}
+
+  bool is_rectangle() const override { return false; }
+  Result<VibratingPlate> vibrating() override { return pliant::vibrating(*plate_, bending_); }
+  Result<double> smallest_eigenvalue() override {
+    return pliant::smallest_eigenvalue(*plate_, bending_, is_held_);
+  }
+  std::size_t memory() const override { return plate_->memory(); }
+
+ private:
+  std::unique_ptr<TrianglePlate> plate_;
+  Bending bending_;
+  bool is_held_;
+};
+
+}  // namespace
+
 TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
                            const BodySettings& settings, SolverChoice solver, RunContext context,
                            std::shared_ptr<const NodeFactors> factors)
@@ -117,6 +141,23 @@ SolverCounts TriangleBody::solver_counts() const {
   for (const Solve& one : solves_)
     if (one.plate) counts = counts + one.plate->counts();
   return counts;
+}
+
+std::vector<std::vector<int>> TriangleBody::moved_nodes(const StepPlan& plan,
+                                                        std::size_t region) const {
+  const TrianglePatch& patch = plan.surface->patches[region];
+  std::vector<int> nodes;
+  for (int k = 0; k < patch.free_nodes; ++k)
+    nodes.push_back(plan.surface->level_set.nodes[patch.points[k]]);
+  return {std::move(nodes)};
+}
+
+std::unique_ptr<PatchPlate> TriangleBody::plate_of(const BodyInputs& inputs, const StepPlan& plan,
+                                                   std::size_t region, std::size_t) const {
+  return std::make_unique<TrianglePatchPlate>(
+      make_plate(*plan.surface, region, available_solvers().front()),
+      bending_of(inputs, surface_->unit, settings_.border),
+      plan.surface->patches[region].is_held());
 }
 
 // Patches that stay need not be cut out again.
@@ -259,13 +300,17 @@ void TriangleBody::keep_patches(const BodyInputs&) {
     one.moves = patch.moves();
     one.is_held = patch.is_held();
     one.settling_length = settling_length_;
-    if (one.moves && !one.plate) {
-      one.plate = std::make_unique<TrianglePlate>(
-          patch.cells, patch.masses, solver_, context_,
-          factors_of(*surface_, selection.level_set, patch, factors_.get()));
-    }
+    if (one.moves && !one.plate) one.plate = make_plate(selection, k, solver_);
     find_rows(one);
   }
+}
+
+std::unique_ptr<TrianglePlate> TriangleBody::make_plate(const TriangleSelection& selection,
+                                                        std::size_t k, SolverChoice solver) const {
+  const TrianglePatch& patch = selection.patches[k];
+  return std::make_unique<TrianglePlate>(
+      patch.cells, patch.masses, solver, context_,
+      factors_of(*surface_, selection.level_set, patch, factors_.get()));
 }
 
 void TriangleBody::find_rows(Solve& one) const {

@@ -22,11 +22,6 @@ Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, 
 std::vector<double> means_on_triangles(const TriangleSurface& surface,
                                        const std::vector<double>& at_nodes);
 
-/// The factors of a patch's plate. Null: the material is even.
-std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
-                                              const LevelSet& level_set, const TrianglePatch& patch,
-                                              const NodeFactors* factors);
-
 /// One elastic surface as triangles, of any mesh. docs/model.md, "Surfaces".
 class TriangleBody final : public ElasticBody {
  public:
@@ -51,6 +46,10 @@ class TriangleBody final : public ElasticBody {
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
     return plan.surface->forces[force].push;
   }
+  std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
+                                            std::size_t region) const override;
+  std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,
+                                       std::size_t region, std::size_t patch) const override;
   SolverCounts solver_counts() const override;
 
   const TriangleSurface& surface() const { return *surface_; }
@@ -72,6 +71,8 @@ class TriangleBody final : public ElasticBody {
                        const BodyInputs& inputs, StepPlan& plan) const;
   Result<void> weigh(const TriangleSurface& surface, const PointTree& tree,
                      const BodyInputs& inputs, TriangleSelection& selection) const;
+  std::unique_ptr<TrianglePlate> make_plate(const TriangleSelection& selection, std::size_t k,
+                                            SolverChoice solver) const;
   void find_rows(Solve& one) const;
   int first_node(std::size_t k) const;
 

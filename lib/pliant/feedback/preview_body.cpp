@@ -6,8 +6,6 @@
 #include <variant>
 
 #include "pliant/body/cycle.hpp"
-#include "pliant/body/grid_body.hpp"
-#include "pliant/body/triangle_body.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/region/closed_boxes.hpp"
@@ -24,7 +22,7 @@ PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double 
       with_swings_(with_swings),
       context_(std::move(context)),
       share_(context_.memory),
-      response_(shape_, surface_, context_) {}
+      response_(shape_, surface_, context_.memory) {}
 
 Result<std::unique_ptr<Body>> PreviewBody::make(Reference reference) const {
   BodySettings settings = body_settings(surface_, shape_.grid.has_value());
@@ -141,21 +139,6 @@ Result<void> PreviewBody::begin_cycle(int frames, const std::function<Result<voi
 
 void PreviewBody::return_to_cycle() { body(is_plain_).restore(cycle_); }
 
-// The displacements of a box's nodes, row by row; object space.
-Field PreviewBody::displacements(const Box& box) const {
-  const Grid& grid = *shape_.grid;
-  Field ways(Eigen::Index{box.columns()} * box.rows(), 3);
-  for (int j = box.j0; j <= box.j1; ++j) {
-    const Eigen::Index row = Eigen::Index{j - box.j0} * box.columns();
-    for_each_stretch(grid, box.i0, box.i1, j, [&](int node, int offset, int count) {
-      ways.middleRows(row + offset, count) = current_->state().positions.middleRows(node, count) -
-                                             current_->rest().middleRows(node, count);
-    });
-  }
-  return ways;
-}
-
-// Those of some nodes.
 Field PreviewBody::displacements(std::span<const int> nodes) const {
   Field ways(static_cast<Eigen::Index>(nodes.size()), 3);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -165,28 +148,10 @@ Field PreviewBody::displacements(std::span<const int> nodes) const {
   return ways;
 }
 
-PreviewBody::Peak PreviewBody::peak(const Transform& transform,
-                                    const std::optional<Box>& box) const {
-  Peak peak;
-  Eigen::Index row = 0;
-  const auto find_in = [&](const Field& way) {
-    const LongestVector longest = longest_vector(way);
-    row = longest.row;
-    peak.size = longest.length;
-    peak.way = way.row(row).transpose();
-  };
-  if (!shape_.grid) {
-    find_in(vectors_to_world(transform, current_->state().positions - current_->rest()));
-    peak.node = static_cast<int>(row);
-    return peak;
-  }
-  const Grid& grid = *shape_.grid;
-  const Box within = box.value_or(grid.box());
-  find_in(vectors_to_world(transform, displacements(within)));
-  const int column = static_cast<int>(row % within.columns());
-  peak.node =
-      grid.node_round(within.i0 + column, within.j0 + static_cast<int>(row / within.columns()));
-  return peak;
+PreviewBody::Peak PreviewBody::peak(const Transform& transform) const {
+  const Field ways = vectors_to_world(transform, current_->state().positions - current_->rest());
+  const LongestVector longest = longest_vector(ways);
+  return {longest.length, ways.row(longest.row).transpose(), static_cast<int>(longest.row)};
 }
 
 Vector3d PreviewBody::displacement(const Transform& transform, int node) const {

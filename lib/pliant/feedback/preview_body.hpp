@@ -104,8 +104,7 @@ class PreviewBody {
     int node = 0;
   };
 
-  /// The largest present displacement; if a box is given, within the box.
-  Peak peak(const Transform& transform, const std::optional<Box>& box = {}) const;
+  Peak peak(const Transform& transform) const;  ///< the largest present displacement
   Vector3d displacement(const Transform& transform, int node) const;  ///< world [length]
 
   /// The largest present displacement of a vertex, as a frame shows it. World [length]
@@ -139,16 +138,9 @@ class PreviewBody {
   Result<void> plan(const BodyInputs& inputs, bool is_plain);
   std::vector<std::size_t> deepest_at_nodes(const BodyInputs& inputs,
                                             const LevelSet& level_set) const;
-  Field displacements(const Box& box) const;
   Field displacements(std::span<const int> nodes) const;
-  Result<MovingRegion> patch_vibrations(const BodyInputs& inputs, RegionPreview region,
-                                        const RegionMotion* known) const;
-  Result<MovingRegion> triangle_vibrations(const BodyInputs& inputs,
-                                           const TriangleSelection& selection, std::size_t k,
-                                           RegionPreview region, const RegionMotion* known);
   MovingRegion moving_as(const RegionMotion& motion, const BodyInputs& inputs,
                          RegionPreview region) const;
-  PlateSystem system_of(const BodyInputs& inputs, const Patch& patch) const;
   void set_natural(const BodyInputs& inputs, const Dynamics& dynamics, double lambda,
                    RegionPreview& region) const;
   Result<MovingRegion> add_vibrations(const BodyInputs& inputs, const VibratingPlate& plate,

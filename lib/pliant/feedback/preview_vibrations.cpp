@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
-#include "pliant/body/grid_body.hpp"
-#include "pliant/body/triangle_body.hpp"
+#include "pliant/body/patch_plate.hpp"
 #include "pliant/feedback/preview_body.hpp"
 
 namespace pliant {
@@ -44,15 +42,51 @@ Dynamics felt_by(const RegionMotion& motion, const BodyInputs& inputs) {
 Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
                                              std::size_t k, RegionPreview region,
                                              const RegionMotion* known) {
-  if (plan.surface) return triangle_vibrations(inputs, *plan.surface, k, std::move(region), known);
-  return patch_vibrations(inputs, std::move(region), known);
-}
-
-PlateSystem PreviewBody::system_of(const BodyInputs& inputs, const Patch& patch) const {
-  PlateSystem system{outline_of(*shape_.grid, patch), inputs.stiffness, 0};
-  system.poisson = poisson_of(inputs, patch, shape_.factors.get());
-  system.factors = factors_on(*shape_.grid, patch, shape_.factors);
-  return system;
+  const auto patches = real_->moved_nodes(plan, k);
+  std::size_t moved = 0;
+  Field ways;
+  for (std::size_t patch = 0; patch < patches.size(); ++patch) {
+    Field own = displacements(patches[patch]);
+    const double size = longest_vector(vectors_to_world(inputs.transform, own)).length;
+    const bool is_larger =
+        region.static_peak == 0 && size == 0 && patches[patch].size() > patches[moved].size();
+    if (patch > 0 && size <= region.static_peak && !is_larger) continue;
+    region.static_peak = std::max(size, region.static_peak);
+    moved = patch;
+    ways = std::move(own);
+  }
+  if (known) return moving_as(*known, inputs, std::move(region));
+  const std::vector<int>& nodes = patches[moved];
+  // Shapes that are found for an animation of the same load are those of the vibrations too.
+  const bool is_elastic = !surface_.material.yield && is_plain(surface_);
+  const bool is_small = nodes.size() <= most_vibrating_nodes;
+  auto* const responding =
+      is_elastic && is_small ? response_.patch_of(*real_, inputs, plan, k) : nullptr;
+  const auto own = responding ? nullptr : real_->plate_of(inputs, plan, k, moved);
+  PatchPlate& patch = responding ? *responding->plate : *own;
+  if (!is_small && !patch.is_rectangle()) return MovingRegion{std::move(region)};
+  const auto plate = patch.vibrating();
+  if (!plate) return fail(plate.error());
+  ResponseSpace* space = nullptr;
+  if (responding && responding->patterns.cols() == 1 && with_swings_) {
+    const auto made = response_.space_of(*responding);
+    if (!made) return fail(made.error());
+    space = *made;
+  }
+  // A damping ratio is that of the slowest vibration of all patches.
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t other = 0; other < patches.size(); ++other) {
+    if (!inputs.asks_for_vibrations() || other == moved) continue;
+    const auto lambda = real_->plate_of(inputs, plan, k, other)->smallest_eigenvalue();
+    if (!lambda) return fail(lambda.error());
+    least = std::min(least, *lambda);
+  }
+  const NodeFactors* const factors = shape_.factors.get();
+  const double drag = factors ? drag_of(maps_of(*factors, nodes), ways) : 1;
+  auto moving = add_vibrations(inputs, *plate, drag, ways, least, std::move(region), space);
+  if (moving) moving->preview.solver_memory = patch.memory();
+  if (moving && moving->motion && responding) responding->lambda = moving->motion->slowest;
+  return moving;
 }
 
 // Told in the scene's time, for those who watch it.
@@ -68,106 +102,10 @@ Result<MovingRegion> PreviewBody::unheld_vibration(const BodyInputs& inputs, con
                                                    const RegionMotion* known) const {
   region.is_held = false;
   if (known) return moving_as(*known, inputs, std::move(region));
-  const auto smallest = [&]() -> Result<double> {
-    if (!plan.surface) {
-      const auto solver = make_plate_solver(SolverChoice::Auto, context_);
-      return smallest_eigenvalue(*solver, system_of(inputs, region.region.patches[0]));
-    }
-    const TrianglePatch& patch = plan.surface->patches[k];
-    const NodeFactors* const factors = shape_.factors.get();
-    TrianglePlate plate(patch.cells, patch.masses, available_solvers().front(), context_,
-                        factors_of(*shape_.surface, plan.surface->level_set, patch, factors));
-    return smallest_eigenvalue(plate, response_.bending_at(inputs), patch.is_held());
-  };
-  const auto lambda = smallest();
+  const auto lambda = real_->plate_of(inputs, plan, k, 0)->smallest_eigenvalue();
   if (!lambda) return fail(lambda.error());
   if (*lambda == 0) return MovingRegion{std::move(region)};
   return moving_as(motion_of(inputs, {{*lambda, 1}}, *lambda, 1), inputs, std::move(region));
-}
-
-Result<MovingRegion> PreviewBody::patch_vibrations(const BodyInputs& inputs, RegionPreview region,
-                                                   const RegionMotion* known) const {
-  const std::vector<Patch>& patches = region.region.patches;
-  const Patch* moved = &patches[0];
-  int most = 0;
-  for (const Patch& patch : patches) {
-    const double size = peak(inputs.transform, patch.box).size;
-    const bool is_larger = region.static_peak == 0 && size == 0 && patch.interior_count() > most;
-    if (size <= region.static_peak && !is_larger) continue;
-    region.static_peak = std::max(size, region.static_peak);
-    most = patch.interior_count();
-    moved = &patch;
-  }
-  if (known) return moving_as(*known, inputs, std::move(region));
-  const Box& box = moved->box;
-  const PlateSystem system = system_of(inputs, *moved);
-  if (!moved->is_rectangle() && moved->interior_count() > most_vibrating_nodes) {
-    return MovingRegion{std::move(region)};
-  }
-  const auto solver = make_plate_solver(SolverChoice::Auto, context_);
-  const auto plate = vibrating(*solver, system);
-  if (!plate) return fail(plate.error());
-  // A damping ratio is that of the slowest vibration of all patches.
-  double least = std::numeric_limits<double>::infinity();
-  for (const Patch& patch : patches) {
-    if (!inputs.asks_for_vibrations() || &patch == moved) continue;
-    const auto other = make_plate_solver(SolverChoice::Auto, context_);
-    const auto lambda = smallest_eigenvalue(*other, system_of(inputs, patch));
-    if (!lambda) return fail(lambda.error());
-    least = std::min(least, *lambda);
-  }
-  const Field ways = interior_of(system.outline, displacements(box));
-  double drag = 1;
-  if (system.factors) {
-    std::vector<int> nodes(static_cast<std::size_t>(system.outline.grid().node_count()));
-    std::iota(nodes.begin(), nodes.end(), 0);
-    drag = drag_of(interior_of(system.outline, maps_of(*system.factors, nodes)), ways);
-  }
-  auto moving = add_vibrations(inputs, *plate, drag, ways, least, std::move(region));
-  if (moving) moving->preview.solver_memory = solver->memory();
-  return moving;
-}
-
-Result<MovingRegion> PreviewBody::triangle_vibrations(const BodyInputs& inputs,
-                                                      const TriangleSelection& selection,
-                                                      std::size_t k, RegionPreview region,
-                                                      const RegionMotion* known) {
-  const TrianglePatch& patch = selection.patches[k];
-  std::vector<int> nodes;
-  for (int n = 0; n < patch.free_nodes; ++n) {
-    nodes.push_back(selection.level_set.nodes[patch.points[n]]);
-  }
-  const Field ways = displacements(nodes);
-  const Field world = vectors_to_world(inputs.transform, ways);
-  region.static_peak = longest_vector(world).length;
-  if (known) return moving_as(*known, inputs, std::move(region));
-  if (patch.free_nodes > most_vibrating_nodes) return MovingRegion{std::move(region)};
-  const NodeFactors* const factors = shape_.factors.get();
-  const Bending bending = response_.bending_at(inputs);
-  // Shapes that are found for an animation of the same load are those of the vibrations too.
-  const bool is_elastic = !surface_.material.yield && is_plain(surface_);
-  auto* const responding = is_elastic ? response_.patch_of(inputs, selection, k) : nullptr;
-  std::unique_ptr<TrianglePlate> own;
-  if (!responding) {
-    own = std::make_unique<TrianglePlate>(
-        patch.cells, patch.masses, available_solvers().front(), context_,
-        factors_of(*shape_.surface, selection.level_set, patch, factors));
-  }
-  TrianglePlate& triangles = own ? *own : *responding->plate;
-  const auto plate = vibrating(triangles, bending);
-  if (!plate) return fail(plate.error());
-  ResponseSpace* space = nullptr;
-  if (responding && responding->patterns.cols() == 1 && with_swings_) {
-    const auto made = response_.space_of(*responding);
-    if (!made) return fail(made.error());
-    space = *made;
-  }
-  const double drag = factors ? drag_of(maps_of(*factors, nodes), ways) : 1;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  auto moving = add_vibrations(inputs, *plate, drag, ways, none, std::move(region), space);
-  if (moving) moving->preview.solver_memory = triangles.memory();
-  if (moving && moving->motion && responding) responding->lambda = moving->motion->slowest;
-  return moving;
 }
 
 // `drag`: of the map of damping in the shape of `ways`, the displacement of each unknown, object

@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "pliant/body/triangle_body.hpp"
 #include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/plate/swing.hpp"
-#include "pliant/plate/vibration.hpp"
-#include "pliant/sampling/sampling.hpp"
 
 namespace pliant {
 namespace {
@@ -18,9 +15,8 @@ constexpr int most_shapes = 120;
 
 }  // namespace
 
-ResponsePlayer::ResponsePlayer(const RestShape& shape, const Surface& surface,
-                               const RunContext& context)
-    : shape_(shape), surface_(surface), context_(context), share_(context.memory) {}
+ResponsePlayer::ResponsePlayer(const RestShape& shape, const Surface& surface, MemoryBudget* memory)
+    : shape_(shape), surface_(surface), share_(memory) {}
 
 // Takes the load as a sum of the patterns, and what it has beyond them as another one. False: there
 // are too many.
@@ -43,12 +39,9 @@ bool ResponsePlayer::is_for_surface() const {
          shape_.rest.rows() >= least_nodes && surface_.solver.integrator != Integrator::Exact;
 }
 
-Bending ResponsePlayer::bending_at(const BodyInputs& inputs) const {
-  return bending_of(inputs, shape_.surface->unit, body_settings(surface_, false).border);
-}
-
-bool ResponsePlayer::has_patches(const TriangleSelection& selection, const Bending& bending) const {
-  return bending == bending_ && selection.level_set == level_set_;
+bool ResponsePlayer::has_patches(const BodyInputs& inputs, const StepPlan& plan) const {
+  return inputs.stiffness == stiffness_ && inputs.poisson == poisson_ &&
+         plan.surface->level_set == level_set_;
 }
 
 // The memory of all shapes. False: there is less.
@@ -59,12 +52,12 @@ bool ResponsePlayer::reserve() {
   return share_.try_resize(bytes);
 }
 
-ResponsePlayer::Patch* ResponsePlayer::patch_of(const BodyInputs& inputs,
-                                                const TriangleSelection& selection, std::size_t k) {
-  if (!is_for_surface() || !selection.patches[k].moves() || !selection.patches[k].is_held())
-    return nullptr;
-  const Bending bending = bending_at(inputs);
-  if (!has_patches(selection, bending)) begin(selection, bending);
+ResponsePlayer::Patch* ResponsePlayer::patch_of(const Body& body, const BodyInputs& inputs,
+                                                const StepPlan& plan, std::size_t k) {
+  if (!is_for_surface()) return nullptr;
+  const TriangleSelection& selection = *plan.surface;
+  if (!selection.patches[k].moves() || !selection.patches[k].is_held()) return nullptr;
+  if (!has_patches(inputs, plan)) begin(body, inputs, plan);
   if (!reserve()) return nullptr;
   const auto moves = [](const TrianglePatch& patch) { return patch.moves(); };
   const auto end = selection.patches.begin() + static_cast<std::ptrdiff_t>(k);
@@ -82,24 +75,23 @@ ResponsePlayer::Patch* ResponsePlayer::patch_of(const BodyInputs& inputs,
 
 Result<ResponseSpace*> ResponsePlayer::space_of(Patch& patch) {
   // Another shift may have been tried since.
-  auto plate = vibrating(*patch.plate, bending_);
+  auto plate = patch.plate->vibrating();
   if (!plate) return fail(plate.error());
   if (!patch.space) patch.space.emplace(*std::move(plate), patch.patterns);
   return &*patch.space;
 }
 
-void ResponsePlayer::begin(const TriangleSelection& selection, const Bending& bending) {
-  bending_ = bending;
-  level_set_ = selection.level_set;
+void ResponsePlayer::begin(const Body& body, const BodyInputs& inputs, const StepPlan& plan) {
+  stiffness_ = inputs.stiffness;
+  poisson_ = inputs.poisson;
+  level_set_ = plan.surface->level_set;
   patches_.clear();
-  for (const TrianglePatch& patch : selection.patches) {
-    if (!patch.moves()) continue;
+  for (std::size_t k = 0; k < plan.surface->patches.size(); ++k) {
+    if (!plan.surface->patches[k].moves()) continue;
     Patch& own = patches_.emplace_back();
-    for (int k = 0; k < patch.free_nodes; ++k)
-      own.nodes.push_back(level_set_.nodes[patch.points[k]]);
-    own.plate = std::make_unique<TrianglePlate>(patch.cells, patch.masses,
-                                                available_solvers().front(), context_);
-    own.patterns.resize(patch.free_nodes, 0);
+    own.nodes = body.moved_nodes(plan, k)[0];
+    own.plate = body.plate_of(inputs, plan, k, 0);
+    own.patterns.resize(static_cast<Eigen::Index>(own.nodes.size()), 0);
   }
 }
 
@@ -113,7 +105,7 @@ Result<bool> ResponsePlayer::add(const BodyInputs& inputs, const StepPlan& plan)
     Dynamics dynamics = inputs.dynamics;
     if (inputs.asks_for_vibrations()) {
       if (!patch.lambda) {
-        const auto lambda = smallest_eigenvalue(*patch.plate, bending_, true);
+        const auto lambda = patch.plate->smallest_eigenvalue();
         if (!lambda) return fail(lambda.error());
         patch.lambda = *lambda;
       }
@@ -161,10 +153,9 @@ Result<std::optional<std::vector<double>>> ResponsePlayer::peaks(
     if (!next) return fail(next.error());
     plan = *std::move(next);
     if (!plan.is_held() || !plan.solves()) return Peaks();
-    const Bending bending = bending_at(inputs);
-    if (!has_patches(*plan.surface, bending)) {
+    if (!has_patches(inputs, plan)) {
       if (steps > 0) return Peaks();
-      begin(*plan.surface, bending);
+      begin(body, inputs, plan);
     }
     steps += plan.steps.count;
     const auto added = add(inputs, plan);

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "pliant/body/body.hpp"
+#include "pliant/body/patch_plate.hpp"
 #include "pliant/core/memory_budget.hpp"
-#include "pliant/core/run_context.hpp"
 #include "pliant/plate/response_space.hpp"
-#include "pliant/plate/triangles/triangle_plate.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
 
@@ -30,7 +29,7 @@ class ResponsePlayer {
   /// A patch that it plays.
   struct Patch {
     std::vector<int> nodes;  ///< of its unknowns
-    std::unique_ptr<TrianglePlate> plate;
+    std::unique_ptr<PatchPlate> plate;
     std::optional<double> lambda = {};  ///< of its slowest vibration, if that is known
     Eigen::MatrixXd patterns;           ///< #unknowns x #patterns, orthonormal
     std::optional<ResponseSpace> space = {};
@@ -39,7 +38,7 @@ class ResponsePlayer {
   };
 
   /// Requires: the surface's response is in proportion to its loads; shape and surface outlive it.
-  ResponsePlayer(const RestShape& shape, const Surface& surface, const RunContext& context);
+  ResponsePlayer(const RestShape& shape, const Surface& surface, MemoryBudget* memory);
 
   /// The largest displacement of a vertex after each of the frames, the first of which begins at
   /// rest, in world space [length]; null: it cannot be told, or not with less work. `body` is of
@@ -48,21 +47,18 @@ class ResponsePlayer {
   Result<std::optional<std::vector<double>>> peaks(const Body& body, StepPlan& plan,
                                                    std::span<const FrameToPlay> frames);
 
-  /// Patch `k` of a selection, its load among its patterns; null: it would not be played.
-  Patch* patch_of(const BodyInputs& inputs, const TriangleSelection& selection, std::size_t k);
+  /// Patch `k` of a plan, its load among its patterns; null: it would not be played.
+  Patch* patch_of(const Body& body, const BodyInputs& inputs, const StepPlan& plan, std::size_t k);
 
   /// Its space, ready to be extended. Requires: it has a pattern. Errors: those of the solver.
   Result<ResponseSpace*> space_of(Patch& patch);
-
-  /// The form of the surface's plates. Requires: it is of triangles.
-  Bending bending_at(const BodyInputs& inputs) const;
 
   double cost() const { return cost_; }  ///< of the last peaks, in steps of nodes
 
  private:
   bool is_for_surface() const;
-  bool has_patches(const TriangleSelection& selection, const Bending& bending) const;
-  void begin(const TriangleSelection& selection, const Bending& bending);
+  bool has_patches(const BodyInputs& inputs, const StepPlan& plan) const;
+  void begin(const Body& body, const BodyInputs& inputs, const StepPlan& plan);
   Result<bool> add(const BodyInputs& inputs, const StepPlan& plan);
   bool reserve();
   static bool add_patterns(Patch& patch, const Field& load);
@@ -70,10 +66,10 @@ class ResponsePlayer {
 
   const RestShape& shape_;
   const Surface& surface_;
-  RunContext context_;
   MemoryShare share_;
   LevelSet level_set_;  // of the patches
-  Bending bending_;
+  Stiffness stiffness_;
+  double poisson_ = 0;
   std::vector<Patch> patches_;
   double cost_ = 0;
 };
