@@ -2,6 +2,7 @@
 attacker. tests/viewer tests the drawings of Chromium.
 """
 
+import contextlib
 import importlib.machinery
 import importlib.util
 import json
@@ -451,10 +452,12 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
         scratch = self.path("scratch")
         with self.start_both("--movie", "out.mp4") as process:
             family = self.await_family(process, 2)
-            for each in (process.pid, *self.descendants(process.pid)):
+            everyone = (process.pid, *self.descendants(process.pid))
+            for each in everyone:
                 os.kill(each, signal.SIGSTOP)
-            for each in (process.pid, *self.descendants(process.pid)):
-                os.kill(each, signal.SIGKILL)
+            for each in everyone:
+                with contextlib.suppress(ProcessLookupError):  # the system ends some with another
+                    os.kill(each, signal.SIGKILL)
             process.communicate(timeout=60)
         self.await_end_of(family)
         for each in family:
