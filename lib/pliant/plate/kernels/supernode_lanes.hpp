@@ -246,7 +246,7 @@ void subtract_products(const ProductsView& view) {
 // uses, forward behind them and backward before them, since what it comes to next is not the next
 // line for a processor to guess: rows are used side by side, and supernodes from the last to the
 // first.
-constexpr long prefetch_distance = 1024;  // [doubles]; from 512 to 2048 are as fast
+constexpr long prefetch_distance = 1024;  // [doubles]; 384 and 4096 are slower
 template <int Numbers>
 PLIANT_INLINE void prefetch(const double* entries, long distance) {
   constexpr int of_line = 8;
@@ -342,7 +342,21 @@ PLIANT_INLINE void subtract_below(const double* entries, int count, const int* r
   }
 }
 
-// Subtracts from the own rows what `Rows` rows below have for them.
+// The same if there are at most `Most` own rows, which registers hold; false: there are more.
+template <class N, int Most = 8>
+PLIANT_INLINE bool subtract_below_few(const double* entries, int columns, int count,
+                                      const int* rows, const double* x, double* own) {
+  constexpr int sums = Most <= 2 ? 4 : Most <= 4 ? 2 : 1;
+  if (columns == Most) {
+    subtract_below<N, Most, sums>(entries, count, rows, x, own);
+    return true;
+  }
+  if constexpr (Most > 1)
+    return subtract_below_few<N, Most - 1>(entries, columns, count, rows, x, own);
+  return false;
+}
+
+// Subtracts from the own rows what `Rows` rows below have for them, which registers hold.
 template <class N, int Rows>
 PLIANT_INLINE void subtract_rows_below(const double* entries, int columns, const int* rows,
                                        const double* x, double* own) {
@@ -420,57 +434,17 @@ void solve_backward(const SupernodesView& factor, int supernode, double* x) {
   const double* const below = lower + lower_entries<N>(columns);
   double* const own = x + static_cast<long>(node.first) * (N::width * row_numbers);
   const int* const rows = factor.rows + node.rows_at;
-  if (supernode > 0) {
-    const Supernode& before = factor.supernodes[supernode - 1];
-    const double* const end = lower;
-    const double* from = factor.entries + N::width * before.entries_at;
-    if (end - from > 2048) from = end - 2048;
-    for (; from < end; from += 8) __builtin_prefetch(from);
-    const int* const before_rows = factor.rows + before.rows_at;
-    for (int k = 0; k < before.rows; ++k)
-      __builtin_prefetch(x + static_cast<long>(before_rows[k]) * (N::width * row_numbers));
-  }
   for (int row = 0; row < columns; ++row)
     N::store_line(own, row, N::over(N::load_line(own, row), factor.pivots, node.first + row));
-  const auto subtract_all = [&]<int Columns, int Sums>() PLIANT_INLINED {
-    subtract_below<N, Columns, Sums>(below, node.rows, rows, x, own);
-  };
   const auto subtract_rows = [&]<int Rows>(int first) PLIANT_INLINED {
     subtract_rows_below<N, Rows>(below + static_cast<long>(first) * (N::width * columns), columns,
                                  rows + first, x, own);
   };
-  // Few own rows are kept in registers, of many the rows below.
-  switch (columns) {
-    case 1:
-      subtract_all.template operator()<1, 4>();
-      break;
-    case 2:
-      subtract_all.template operator()<2, 4>();
-      break;
-    case 3:
-      subtract_all.template operator()<3, 2>();
-      break;
-    case 4:
-      subtract_all.template operator()<4, 2>();
-      break;
-    case 5:
-      subtract_all.template operator()<5, 1>();
-      break;
-    case 6:
-      subtract_all.template operator()<6, 1>();
-      break;
-    case 7:
-      subtract_all.template operator()<7, 1>();
-      break;
-    case 8:
-      subtract_all.template operator()<8, 1>();
-      break;
-    default: {
-      int end = node.rows;
-      for (; end >= 8; end -= 8) subtract_rows.template operator()<8>(end - 8);
-      for (; end >= 4; end -= 4) subtract_rows.template operator()<4>(end - 4);
-      for (; end > 0; --end) subtract_rows.template operator()<1>(end - 1);
-    }
+  if (!subtract_below_few<N>(below, columns, node.rows, rows, x, own)) {
+    int end = node.rows;
+    for (; end >= 8; end -= 8) subtract_rows.template operator()<8>(end - 8);
+    for (; end >= 4; end -= 4) subtract_rows.template operator()<4>(end - 4);
+    for (; end > 0; --end) subtract_rows.template operator()<1>(end - 1);
   }
   int row = columns;
   for (; row >= 4; row -= 4) solve_own_back<N, 4>(lower + lower_entries<N>(row - 4), row - 4, own);

@@ -18,7 +18,7 @@ namespace {
 constexpr int panels_of(int rows) { return (rows + panel_rows - 1) / panel_rows; }
 
 template <class Number>
-constexpr int width = static_cast<int>(sizeof(Number) / sizeof(double));
+constexpr int width = SupernodalNumbers<Number>::line / row_numbers;
 
 template <class Number>
 const FactorKernels& kernels_of(const RunContext& context) {
