@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "body/sheets.hpp"
+#include "pliant/body/patch_plate.hpp"
 #include "pliant/body/triangle_body.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"
@@ -141,4 +142,53 @@ TEST_CASE("a frame that is stopped changes nothing, and can be done again", "[bo
       CHECK(body->state() == states[static_cast<std::size_t>(frame) + 1]);
     }
   });
+}
+
+TEST_CASE("a patch that a body hands out is the plate that its step solves", "[body]") {
+  for (const SurfaceKind& kind : kinds()) {
+    for (const Combine combine : {Combine::Box, Combine::Union}) {
+      CAPTURE(kind.name, combine);
+      BodySettings settings;
+      settings.combine = combine;
+      settings.measure = Measure::Rest;
+      const auto body = kind.make(settings, {});
+      Eigen::Index node = 0;
+      body->rest().rowwise().squaredNorm().minCoeff(&node);
+      // One node is pushed; another force only selects, so that a union has a mask.
+      SampledForce push = press(0, 0, 1, 0.3 * kind.side);
+      push.kind = PointForce{body->rest().row(node).transpose(), {0, 1, 0}};
+      push.force_radius = 1e-3 * kind.side;
+      SampledForce select = press(0.2 * kind.side, 0.25 * kind.side, 0, 0.2 * kind.side);
+      BodyInputs inputs = inputs_of({push, select});
+      inputs.dynamics = {0, 0};
+      const StepPlan plan = body->look(inputs).value();
+      REQUIRE(body->step(inputs));
+      const Field ways = body->state().positions - body->rest();
+      const auto patches = body->moved_patches(plan, 0);
+      REQUIRE(patches.size() == 1);
+      const std::vector<int>& nodes = patches[0].nodes;
+      std::vector<int> ascending = nodes, moved;
+      std::sort(ascending.begin(), ascending.end());
+      for (int k = 0; k < ways.rows(); ++k) {
+        if (!ways.row(k).isZero(0)) moved.push_back(k);
+      }
+      CHECK(ascending == moved);
+      const bool is_union = combine == Combine::Union;
+      CHECK(patches[0].is_rectangle == (kind.name == "a grid" && !is_union));
+      const auto plate = body->plate_of(inputs, plan, 0, 0);
+      const auto vibrating = plate->vibrating();
+      REQUIRE(vibrating);
+      REQUIRE(ways(node, 1) > 0);
+      const auto at = std::find(nodes.begin(), nodes.end(), node) - nodes.begin();
+      // A surface spreads a force over the area near it.
+      Field load = Field::Zero(static_cast<Eigen::Index>(nodes.size()), 3);
+      load(at, 1) = 1;
+      if (plan.surface) load = plan.surface->loads.at(0);
+      const Eigen::VectorXd found = vibrating->solve(load).value().col(1);
+      REQUIRE(found(at) > 0);
+      const Eigen::VectorXd expected = ways(nodes, 1) / ways(node, 1);
+      CHECK((found / found(at) - expected).cwiseAbs().maxCoeff() < 1e-9);
+      CHECK(plate->smallest_eigenvalue().value() > 0);
+    }
+  }
 }

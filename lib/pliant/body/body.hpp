@@ -55,6 +55,12 @@ TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
 
 class PatchPlate;
 
+/// A patch that a plan moves.
+struct MovedPatch {
+  std::vector<int> nodes;     ///< that move, in the order of the unknowns of its plate
+  bool is_rectangle = false;  ///< false: its plate needs a sparse factor
+};
+
 /// One elastic surface: its state, and one frame's step. Thesis 5.3; SPEC 6.
 class Body {
  public:
@@ -86,10 +92,9 @@ class Body {
   /// The effect of a force, by its index in the inputs, in the step that `plan` plans for them.
   virtual Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const = 0;
 
-  /// The nodes that each patch of a region moves, in the order of the unknowns of its plate. Each
-  /// patch of a surface of triangles is a region. Requires: the plan solves it.
-  virtual std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
-                                                    std::size_t region) const = 0;
+  /// The patches of a region; each patch of a surface of triangles is one. Requires: the plan
+  /// solves it.
+  virtual std::vector<MovedPatch> moved_patches(const StepPlan& plan, std::size_t region) const = 0;
 
   /// One of these patches by itself.
   virtual std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,

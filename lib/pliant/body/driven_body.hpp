@@ -14,9 +14,7 @@ class DrivenBody final : public Body {
   Result<void> step(const BodyInputs&) override { return {}; }
   const StepPlan& last_step() const override { return no_step_; }
   Push push_of(const BodyInputs&, const StepPlan&, std::size_t) const override { return {}; }
-  std::vector<std::vector<int>> moved_nodes(const StepPlan&, std::size_t) const override {
-    return {};
-  }
+  std::vector<MovedPatch> moved_patches(const StepPlan&, std::size_t) const override { return {}; }
   std::unique_ptr<PatchPlate> plate_of(const BodyInputs&, const StepPlan&, std::size_t,
                                        std::size_t) const override {
     return nullptr;

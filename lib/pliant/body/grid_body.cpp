@@ -60,12 +60,9 @@ double poisson_of(const BodyInputs& inputs, const Patch& patch, const NodeFactor
 
 class GridPatchPlate final : public PatchPlate {
  public:
-  GridPatchPlate(PlateSystem system, bool is_rectangle, const RunContext& context)
-      : system_(std::move(system)),
-        is_rectangle_(is_rectangle),
-        solver_(make_plate_solver(SolverChoice::Auto, context)) {}
+  GridPatchPlate(PlateSystem system, const RunContext& context)
+      : system_(std::move(system)), solver_(make_plate_solver(SolverChoice::Auto, context)) {}
 
-  bool is_rectangle() const override { return is_rectangle_; }
   Result<VibratingPlate> vibrating() override { return pliant::vibrating(*solver_, system_); }
   Result<double> smallest_eigenvalue() override {
     return pliant::smallest_eigenvalue(*solver_, system_);
@@ -74,7 +71,6 @@ class GridPatchPlate final : public PatchPlate {
 
  private:
   PlateSystem system_;
-  bool is_rectangle_;
   std::unique_ptr<PlateSolver> solver_;
 };
 
@@ -103,15 +99,15 @@ Push GridBody::push_of(const BodyInputs& inputs, const StepPlan& plan, std::size
                          plan.selection.patches_of_force(force));
 }
 
-std::vector<std::vector<int>> GridBody::moved_nodes(const StepPlan& plan,
-                                                    std::size_t region) const {
-  std::vector<std::vector<int>> all;
+std::vector<MovedPatch> GridBody::moved_patches(const StepPlan& plan, std::size_t region) const {
+  std::vector<MovedPatch> all;
   for (const Patch& patch : plan.selection.regions[region].patches) {
-    std::vector<int>& nodes = all.emplace_back();
+    MovedPatch& moved = all.emplace_back();
+    moved.is_rectangle = patch.is_rectangle();
     const Box& box = patch.box;
     outline_of(grid_, patch).for_each_run([&](const Outline::Run& run) {
       for (int i = run.i0; i <= run.i1; ++i)
-        nodes.push_back(grid_.node_round(box.i0 + i, box.j0 + run.j));
+        moved.nodes.push_back(grid_.node_round(box.i0 + i, box.j0 + run.j));
     });
   }
   return all;
@@ -123,7 +119,7 @@ std::unique_ptr<PatchPlate> GridBody::plate_of(const BodyInputs& inputs, const S
   PlateSystem system{outline_of(grid_, one), inputs.stiffness, 0};
   system.poisson = poisson_of(inputs, one, factors_.get());
   system.factors = factors_on(grid_, one, factors_);
-  return std::make_unique<GridPatchPlate>(std::move(system), one.is_rectangle(), context_);
+  return std::make_unique<GridPatchPlate>(std::move(system), context_);
 }
 
 Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const {

@@ -27,8 +27,7 @@ class GridBody final : public ElasticBody {
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 
   Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const override;
-  std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
-                                            std::size_t region) const override;
+  std::vector<MovedPatch> moved_patches(const StepPlan& plan, std::size_t region) const override;
   std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,
                                        std::size_t region, std::size_t patch) const override;
   SolverCounts solver_counts() const override { return solvers_.counts(); }

@@ -15,8 +15,6 @@ class PatchPlate {
   PatchPlate& operator=(const PatchPlate&) = delete;
   virtual ~PatchPlate() = default;
 
-  virtual bool is_rectangle() const = 0;  ///< false: it needs a sparse factor
-
   /// Without a shift, as long as this lives, or until another is asked for. Requires: it is held.
   /// Errors: those of the solver.
   virtual Result<VibratingPlate> vibrating() = 0;

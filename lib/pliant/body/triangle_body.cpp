@@ -107,7 +107,6 @@ class TrianglePatchPlate final : public PatchPlate {
   TrianglePatchPlate(std::unique_ptr<TrianglePlate> plate, const Bending& bending, bool is_held)
       : plate_(std::move(plate)), bending_(bending), is_held_(is_held) {}
 
-  bool is_rectangle() const override { return false; }
   Result<VibratingPlate> vibrating() override { return pliant::vibrating(*plate_, bending_); }
   Result<double> smallest_eigenvalue() override {
     return pliant::smallest_eigenvalue(*plate_, bending_, is_held_);
@@ -143,13 +142,13 @@ SolverCounts TriangleBody::solver_counts() const {
   return counts;
 }
 
-std::vector<std::vector<int>> TriangleBody::moved_nodes(const StepPlan& plan,
-                                                        std::size_t region) const {
+std::vector<MovedPatch> TriangleBody::moved_patches(const StepPlan& plan,
+                                                    std::size_t region) const {
   const TrianglePatch& patch = plan.surface->patches[region];
-  std::vector<int> nodes;
+  MovedPatch moved;
   for (int k = 0; k < patch.free_nodes; ++k)
-    nodes.push_back(plan.surface->level_set.nodes[patch.points[k]]);
-  return {std::move(nodes)};
+    moved.nodes.push_back(plan.surface->level_set.nodes[patch.points[k]]);
+  return {std::move(moved)};
 }
 
 std::unique_ptr<PatchPlate> TriangleBody::plate_of(const BodyInputs& inputs, const StepPlan& plan,

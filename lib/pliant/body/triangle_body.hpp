@@ -46,8 +46,7 @@ class TriangleBody final : public ElasticBody {
   Push push_of(const BodyInputs&, const StepPlan& plan, std::size_t force) const override {
     return plan.surface->forces[force].push;
   }
-  std::vector<std::vector<int>> moved_nodes(const StepPlan& plan,
-                                            std::size_t region) const override;
+  std::vector<MovedPatch> moved_patches(const StepPlan& plan, std::size_t region) const override;
   std::unique_ptr<PatchPlate> plate_of(const BodyInputs& inputs, const StepPlan& plan,
                                        std::size_t region, std::size_t patch) const override;
   SolverCounts solver_counts() const override;

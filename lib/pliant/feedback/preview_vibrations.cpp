@@ -42,29 +42,27 @@ Dynamics felt_by(const RegionMotion& motion, const BodyInputs& inputs) {
 Result<MovingRegion> PreviewBody::vibrations(const BodyInputs& inputs, const StepPlan& plan,
                                              std::size_t k, RegionPreview region,
                                              const RegionMotion* known) {
-  const auto patches = real_->moved_nodes(plan, k);
+  const auto patches = real_->moved_patches(plan, k);
   std::size_t moved = 0;
   Field ways;
   for (std::size_t patch = 0; patch < patches.size(); ++patch) {
-    Field own = displacements(patches[patch]);
+    Field own = displacements(patches[patch].nodes);
     const double size = longest_vector(vectors_to_world(inputs.transform, own)).length;
-    const bool is_larger =
-        region.static_peak == 0 && size == 0 && patches[patch].size() > patches[moved].size();
+    const bool is_larger = region.static_peak == 0 && size == 0 &&
+                           patches[patch].nodes.size() > patches[moved].nodes.size();
     if (patch > 0 && size <= region.static_peak && !is_larger) continue;
     region.static_peak = std::max(size, region.static_peak);
     moved = patch;
     ways = std::move(own);
   }
   if (known) return moving_as(*known, inputs, std::move(region));
-  const std::vector<int>& nodes = patches[moved];
+  const auto& [nodes, is_rectangle] = patches[moved];
+  if (!is_rectangle && nodes.size() > most_vibrating_nodes) return MovingRegion{std::move(region)};
   // Shapes that are found for an animation of the same load are those of the vibrations too.
   const bool is_elastic = !surface_.material.yield && is_plain(surface_);
-  const bool is_small = nodes.size() <= most_vibrating_nodes;
-  auto* const responding =
-      is_elastic && is_small ? response_.patch_of(*real_, inputs, plan, k) : nullptr;
+  auto* const responding = is_elastic ? response_.patch_of(*real_, inputs, plan, k) : nullptr;
   const auto own = responding ? nullptr : real_->plate_of(inputs, plan, k, moved);
   PatchPlate& patch = responding ? *responding->plate : *own;
-  if (!is_small && !patch.is_rectangle()) return MovingRegion{std::move(region)};
   const auto plate = patch.vibrating();
   if (!plate) return fail(plate.error());
   ResponseSpace* space = nullptr;

@@ -89,7 +89,7 @@ void ResponsePlayer::begin(const Body& body, const BodyInputs& inputs, const Ste
   for (std::size_t k = 0; k < plan.surface->patches.size(); ++k) {
     if (!plan.surface->patches[k].moves()) continue;
     Patch& own = patches_.emplace_back();
-    own.nodes = body.moved_nodes(plan, k)[0];
+    own.nodes = std::move(body.moved_patches(plan, k)[0].nodes);
     own.plate = body.plate_of(inputs, plan, k, 0);
     own.patterns.resize(static_cast<Eigen::Index>(own.nodes.size()), 0);
   }
