@@ -1,13 +1,12 @@
 #include "cli/terminal/supervised_program.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -31,10 +30,13 @@ int code_from(int status) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : ended_by_signal + WTERMSIG(status);
 }
 
-// The parent of a process; 0: it has ended.
+// The parent of a process; 0: it has ended, before the file was opened or before it was read.
 pid_t parent_of(const std::string& process) {
-  std::ifstream file("/proc/" + process + "/stat");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const OpenDescriptor file(
+      open(fmt::format("/proc/{}/stat", process).c_str(), O_RDONLY | O_CLOEXEC));
+  std::array<char, 256> bytes;  // more than are before it
+  const ssize_t count = read(file.number(), bytes.data(), bytes.size());
+  const std::string text(bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
   // The name before it, in parentheses, may contain anything, also a line's end.
   const std::size_t end = text.rfind(") ");
   return end == std::string::npos || text.size() < end + 4 ? 0 : std::atoi(text.c_str() + end + 4);

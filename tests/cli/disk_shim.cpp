@@ -1,10 +1,10 @@
 // Intercepts system calls of the command (LD_PRELOAD). It logs flushes of files and folders, and
 // renames, in order to PLIANT_SHIM_LOG. PLIANT_SHIM_FAIL makes flushes fail: "file 5" or "folder
 // 22" is the errno of every fsync of that kind; EINTR only of every second one. "exchange 22" is
-// that of every exchange of two names. PLIANT_SHIM_KILL=N
-// ends the program, like SIGKILL, before the Nth event. PLIANT_SHIM_SAVE="flush PATH" saves another
-// text at PATH, as an editor does, ahead of the first flush of a file; "exchange PATH" ahead of the
-// first exchange of two names.
+// that of every exchange of two names, "process 3" that of reading what process 1 is.
+// PLIANT_SHIM_KILL=N ends the program, like SIGKILL, before the Nth event. PLIANT_SHIM_SAVE="flush
+// PATH" saves another text at PATH, as an editor does, ahead of the first flush of a file;
+// "exchange PATH" ahead of the first exchange of two names.
 
 #include <cerrno>
 #include <csignal>
@@ -72,6 +72,16 @@ extern "C" int fsync(int descriptor) {
   }
   log("flush " + kind + ' ' + path_of(descriptor));
   return next<int (*)(int)>("fsync")(descriptor);
+}
+
+extern "C" ssize_t read(int descriptor, void* bytes, size_t count) {
+  const char* const wish = std::getenv("PLIANT_SHIM_FAIL");
+  if (wish != nullptr && std::string(wish).starts_with("process ") &&
+      path_of(descriptor) == "/proc/1/stat") {
+    errno = std::atoi(wish + 8);
+    return -1;
+  }
+  return next<ssize_t (*)(int, void*, size_t)>("read")(descriptor, bytes, count);
 }
 
 extern "C" int renameat(int from_folder, const char* from, int to_folder, const char* to) noexcept {

@@ -19,7 +19,7 @@ import zlib
 
 import numpy as np
 
-from command import Command, PLIANT, SANITIZED, SCENE, SOURCE, main
+from command import Command, PLIANT, SANITIZED, SCENE, SHIM, SOURCE, main
 from view_server import HAS_PAGE
 
 # Started like Chromium. Each test appends its own code; results go to a file.
@@ -350,7 +350,7 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
             try:
                 with open(f"/proc/{each}/stat", encoding="utf-8") as file:
                     return file.read().rpartition(") ")[2][0] not in "ZX"
-            except FileNotFoundError:
+            except (FileNotFoundError, ProcessLookupError):  # it ended before it was opened, or read
                 return False
         while any(map(runs, processes)) and time.monotonic() < deadline:
             time.sleep(0.02)
@@ -386,13 +386,13 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
     # Programs that write their numbers, and wait.
     WAITS = "open(os.path.join(folder, f'child-{os.getpid()}'), 'w').close()\ntime.sleep(600)\n"
 
-    def start_both(self, *options, begins="", **more):
+    def start_both(self, *options, begins="", variables={}, **more):
         """A movie or picture whose programs do nothing, with its temporary files in `scratch`."""
         self.program("chromium", BROWSER + begins + self.WAITS)
         self.program("ffmpeg", BROWSER.partition("way =")[0] + "folder = os.path.dirname(os.path.abspath(__file__))\n" + begins + self.WAITS)
         os.makedirs(self.path("scratch"), exist_ok=True)
         return subprocess.Popen([PLIANT, *self.words(*options)], cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                                env=self.variables(TMPDIR=self.path("scratch")), **more)
+                                env=self.variables(TMPDIR=self.path("scratch"), **variables), **more)
 
     def descendants(self, process):
         found = [process]
@@ -447,6 +447,16 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
                 self.await_empty(self.path("scratch"))
                 for each in family:
                     os.remove(self.path(f"child-{each}"))
+
+    def test_a_process_that_ends_while_its_keeper_looks_at_it_keeps_it_from_nothing(self):
+        if not SHIM:
+            self.skipTest("the shim does not go with a sanitizer")
+        with self.start_both(begins=self.FAMILY, variables={"LD_PRELOAD": SHIM, "PLIANT_SHIM_FAIL": "process 3"}) as process:
+            family = self.await_family(process, 5)
+            process.kill()
+            process.communicate(timeout=60)
+        self.await_end_of(family)
+        self.await_empty(self.path("scratch"))
 
     def test_what_is_left_when_all_are_killed_at_once_is_removed_by_the_next(self):
         scratch = self.path("scratch")
