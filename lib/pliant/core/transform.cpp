@@ -9,18 +9,6 @@
 namespace pliant {
 namespace {
 
-// Products of 3x3 matrices are written out: then we fix the order of each sum, not the library.
-Matrix3d product(const Matrix3d& a, const Matrix3d& b) {
-  Matrix3d c;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      c(row, column) =
-          a(row, 0) * b(0, column) + a(row, 1) * b(1, column) + a(row, 2) * b(2, column);
-    }
-  }
-  return c;
-}
-
 Field product(const Field& rows, const Matrix3d& a) {
   Field image(rows.rows(), 3);
   for (int k = 0; k < 3; ++k) {
@@ -86,6 +74,18 @@ Matrix3d inverse(Matrix3d a) {
 }
 
 }  // namespace
+
+// Products of 3x3 matrices are written out: then we fix the order of each sum, not the library.
+Matrix3d product(const Matrix3d& a, const Matrix3d& b) {
+  Matrix3d c;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      c(row, column) =
+          a(row, 0) * b(0, column) + a(row, 1) * b(1, column) + a(row, 2) * b(2, column);
+    }
+  }
+  return c;
+}
 
 std::array<int, 3> axes(RotateOrder order) {
   switch (order) {

@@ -42,6 +42,9 @@ inline Transform make_transform(const Placement& placement) {
   return make_transform(placement.translate, placement.rotate, placement.scale, placement.order);
 }
 
+/// The product of two matrices, with sums of a fixed order.
+Matrix3d product(const Matrix3d& a, const Matrix3d& b);
+
 /// A point in world space. The order of the sum is fixed: (x + y + z) + translation.
 inline Vector3d to_world(const Transform& transform, const Vector3d& point) {
   const Matrix3d& a = transform.linear;

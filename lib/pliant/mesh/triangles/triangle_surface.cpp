@@ -77,7 +77,7 @@ class SurfaceMaker {
           mesh_.face_sizes.size()));
     }
     if (auto numbered = number_edges(); !numbered) return fail(numbered.error());
-    if (!is_stopped()) list_faces_of_nodes();
+    if (!is_stopped()) list_faces_of_nodes(surface_, surface_.node_count(), poll_);
     if (!is_stopped()) lay_flat();
     if (is_stopped()) return interrupted();
     if (auto found = find_unit(); !found) return fail(found.error());
@@ -249,23 +249,6 @@ class SurfaceMaker {
   int first_vertex_of(int node) const {
     const std::vector<int>& nodes = surface_.vertex_nodes;
     return mesh_.number_of(static_cast<int>(std::ranges::find(nodes, node) - nodes.begin()));
-  }
-
-  void list_faces_of_nodes() {
-    Sorted corners = sorted_by(surface_.corner_nodes.size(), surface_.node_count(), poll_,
-                               [&](std::size_t corner) { return surface_.corner_nodes[corner]; });
-    if (is_stopped()) return;
-    surface_.node_starts = std::move(corners.starts);
-    std::vector<int> faces(surface_.corner_nodes.size());
-    for (int face = 0; face < surface_.face_count(); ++face) {
-      if (poll_.after()) return;
-      std::fill_n(faces.begin() + surface_.face_starts[face], surface_.size_of(face), face);
-    }
-    for (int& corner : corners.items) {
-      if (poll_.after()) return;
-      corner = faces[corner];
-    }
-    surface_.node_faces = std::move(corners.items);
   }
 
   void lay_flat() {

@@ -11,6 +11,7 @@
 #include "pliant/core/triangle_cells.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
+#include "pliant/mesh/node_faces.hpp"
 
 namespace pliant {
 
@@ -19,42 +20,26 @@ namespace pliant {
 ///
 /// A face of three corners is one triangle. A face of n > 3 corners has a centre, the mean of its
 /// corners, and n triangles (corner, next corner, centre).
-struct TriangleSurface {
-  std::vector<int> vertex_nodes;  ///< #vertices: the node of each; -1: it is in no face
-  Field rest;                     ///< #nodes x 3: of the lowest vertex, object space [length]
+struct TriangleSurface : NodeFaces {  // the faces that take part, in their order in the mesh
+  std::vector<int> vertex_nodes;      ///< #vertices: the node of each; -1: it is in no face
+  Field rest;                         ///< #nodes x 3: of the lowest vertex, object space [length]
 
-  // The faces that take part, in their order in the mesh.
-  std::vector<int> face_starts;      ///< #faces + 1: its first corner, counted over all faces
   std::vector<int> triangle_starts;  ///< #faces + 1: its first triangle
-  std::vector<int> corner_nodes;     ///< #corners
   std::vector<int> corner_edges;     ///< #corners: the edge from a corner to the next
   std::vector<int> mesh_corners;     ///< #corners: the mesh's, counted over all its faces
   std::vector<int> edge_sides;       ///< #edges: the sides of faces that lie there
   std::vector<FlatTriangle> triangles;
-
-  // The faces around each node, ascending: node_faces[node_starts[k]] to the start of the next.
-  std::vector<int> node_starts;  ///< #nodes + 1
-  std::vector<int> node_faces;
 
   std::array<double, 2> unit = {1, 1};  ///< as in `MeshReading` [length/uv]
   int faces_left_out = 0;               ///< that take no part
   double widest_face = 0;               ///< no two corners of a face are farther apart [length]
 
   int node_count() const { return static_cast<int>(rest.rows()); }
-  int face_count() const { return static_cast<int>(face_starts.size()) - 1; }
   int edge_count() const { return static_cast<int>(edge_sides.size()); }
 
-  int size_of(int face) const { return face_starts[face + 1] - face_starts[face]; }
   bool has_centre(int face) const { return size_of(face) > 3; }
-  std::span<const int> nodes_of(int face) const {
-    return {corner_nodes.data() + face_starts[face], static_cast<std::size_t>(size_of(face))};
-  }
   std::span<const int> edges_of(int face) const {
     return {corner_edges.data() + face_starts[face], static_cast<std::size_t>(size_of(face))};
-  }
-  std::span<const int> faces_of(int node) const {
-    return {node_faces.data() + node_starts[node],
-            static_cast<std::size_t>(node_starts[node + 1] - node_starts[node])};
   }
 };
 

@@ -1,6 +1,7 @@
 #include "pliant/mesh/triangles/triangle_tree.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -146,6 +147,33 @@ ClosestPoint TriangleTree::closest(const Vector3d& p, int near) const {
     open.push_back(first);
   }
   return found.place;
+}
+
+ClosestPoint TriangleTree::first_of_closest(const Vector3d& p, double tolerance) const {
+  Found nearest;
+  nearest.place = closest(p);
+  try_triangle(nearest.place.triangle, p, nearest);
+  const double most = std::sqrt(nearest.squared_distance) + tolerance;
+  std::vector<int> open = {0};
+  while (!open.empty()) {
+    const int cluster = open.back();
+    open.pop_back();
+    if (std::sqrt(squared_distance(cluster, p)) > most) continue;
+    const PointTree::Cluster& here = centres_.clusters()[cluster];
+    if (!here.is_leaf()) {
+      open.push_back(here.child);
+      open.push_back(here.child + 1);
+      continue;
+    }
+    for (int n = here.first; n < here.first + here.count; ++n) {
+      Found one;
+      one.place.triangle = centres_.rows()[n];
+      if (one.place.triangle >= nearest.place.triangle) continue;
+      try_triangle(one.place.triangle, p, one);
+      if (std::sqrt(one.squared_distance) <= most) nearest.place = one.place;
+    }
+  }
+  return nearest.place;
 }
 
 }  // namespace pliant

@@ -32,6 +32,10 @@ class TriangleTree {
   /// Of equally close triangles the first one. The search is faster if the triangle `near` is near.
   ClosestPoint closest(const Vector3d& p, int near = 0) const;
 
+  /// The first triangle that is farther than the closest one by at most `tolerance`, and its
+  /// closest point.
+  ClosestPoint first_of_closest(const Vector3d& p, double tolerance) const;
+
  private:
   struct Found;
   TriangleTree() = default;

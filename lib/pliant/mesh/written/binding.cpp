@@ -28,14 +28,14 @@ Result<Binding> Binding::make(const TriangleSurface& driver, const Transform& tr
                               const Field& points, const StopRequest& should_stop) {
   StopPoll poll(should_stop);
   Binding binding;
-  binding.node_count_ = driver.node_count();
-  binding.take_triangles(driver, poll);
+  binding.faces_ = FaceTriangles(driver, poll);
+  if (!poll.after(0)) binding.rest_ = binding.faces_.with_centres(driver.rest, poll);
   if (!poll.after(0)) binding.take_gradients(poll);
   if (poll.after(0)) return interrupted();
   Field placed = to_world(transform, binding.rest_);
   const double scale = scale_of(placed, points);
   placed *= scale;
-  const auto tree = TriangleTree::make(placed, binding.triangles_, should_stop);
+  const auto tree = TriangleTree::make(placed, binding.faces_.triangles, should_stop);
   if (!tree) return fail(tree.error());
   std::vector<int>& triangles = binding.triangles_of_points_;
   triangles.reserve(static_cast<std::size_t>(points.rows()));
@@ -57,39 +57,12 @@ Result<Binding> Binding::make(const TriangleSurface& driver, const Transform& tr
   return binding;
 }
 
-// Unfinished if it is stopped.
-void Binding::take_triangles(const TriangleSurface& driver, StopPoll& poll) {
-  for (int face = 0; face < driver.face_count(); ++face) {
-    const auto nodes = driver.nodes_of(face);
-    if (poll.after(nodes.size())) return;
-    if (!driver.has_centre(face)) {
-      triangles_.push_back({nodes[0], nodes[1], nodes[2]});
-      continue;
-    }
-    const int centre = node_count_ + static_cast<int>(centre_starts_.size()) - 1;
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      triangles_.push_back({nodes[k], nodes[(k + 1) % nodes.size()], centre});
-    centre_nodes_.insert(centre_nodes_.end(), nodes.begin(), nodes.end());
-    centre_starts_.push_back(static_cast<int>(centre_nodes_.size()));
-  }
-  const Eigen::Index centre_count = static_cast<Eigen::Index>(centre_starts_.size()) - 1;
-  rest_.resize(node_count_ + centre_count, 3);
-  rest_.topRows(node_count_) = driver.rest;
-  for (Eigen::Index centre = 0; centre < centre_count; ++centre) {
-    const int begin = centre_starts_[centre], end = centre_starts_[centre + 1];
-    if (poll.after(4 * static_cast<std::size_t>(end - begin))) return;
-    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-    for (int k = begin; k < end; ++k) sum += driver.rest.row(centre_nodes_[k]);
-    rest_.row(node_count_ + centre) = sum / (end - begin);
-  }
-}
-
 void Binding::take_gradients(StopPoll& poll) {
-  areas_.setZero(node_count_);
-  gradients_.setZero(2 * static_cast<Eigen::Index>(triangles_.size()), 3);
-  for (std::size_t k = 0; k < triangles_.size(); ++k) {
+  areas_.setZero(faces_.node_count);
+  gradients_.setZero(2 * static_cast<Eigen::Index>(faces_.triangles.size()), 3);
+  for (std::size_t k = 0; k < faces_.triangles.size(); ++k) {
     if (poll.after(16)) return;
-    const auto& [a, b, c] = triangles_[k];
+    const auto& [a, b, c] = faces_.triangles[k];
     const Vector3d along_b = (rest_.row(b) - rest_.row(a)).transpose();
     const Vector3d along_c = (rest_.row(c) - rest_.row(a)).transpose();
     const Vector3d normal = along_b.cross(along_c);
@@ -98,8 +71,8 @@ void Binding::take_gradients(StopPoll& poll) {
     const Vector3d half = normal / (2 * size);
     gradients_.row(2 * static_cast<Eigen::Index>(k)) = -half.cross(along_c).transpose();
     gradients_.row(2 * static_cast<Eigen::Index>(k) + 1) = half.cross(along_b).transpose();
-    for (const int corner : triangles_[k])
-      if (corner < node_count_) areas_[corner] += size / 2;
+    for (const int corner : faces_.triangles[k])
+      if (corner < faces_.node_count) areas_[corner] += size / 2;
   }
 }
 
@@ -109,19 +82,20 @@ Result<Field> Binding::displacements(const Field& nodes, Field reuse,
   // Nine components of G, the derivatives of w by x, then by y, then by z, after the three of w.
   Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor> values(rest_.rows(), 12);
   values.setZero();
-  values.topLeftCorner(node_count_, 3) = nodes;
+  values.topLeftCorner(faces_.node_count, 3) = nodes;
   const auto mean_of_corners = [&](int first, int count) {
-    for (std::size_t centre = 0; centre + 1 < centre_starts_.size() && !poll.after(16); ++centre) {
-      const int begin = centre_starts_[centre], end = centre_starts_[centre + 1];
-      auto mean = values.row(node_count_ + static_cast<Eigen::Index>(centre)).segment(first, count);
-      for (int k = begin; k < end; ++k) mean += values.row(centre_nodes_[k]).segment(first, count);
+    for (int centre = 0; centre < faces_.centre_count() && !poll.after(16); ++centre) {
+      const int begin = faces_.centre_starts[centre], end = faces_.centre_starts[centre + 1];
+      auto mean = values.row(faces_.node_count + centre).segment(first, count);
+      for (int k = begin; k < end; ++k)
+        mean += values.row(faces_.centre_nodes[k]).segment(first, count);
       mean /= end - begin;
     }
   };
   mean_of_corners(0, 3);
-  for (std::size_t k = 0; k < triangles_.size(); ++k) {
+  for (std::size_t k = 0; k < faces_.triangles.size(); ++k) {
     if (poll.after(16)) return interrupted();
-    const auto& [a, b, c] = triangles_[k];
+    const auto& [a, b, c] = faces_.triangles[k];
     const Eigen::RowVector3d to_b = values.row(b).head<3>() - values.row(a).head<3>();
     const Eigen::RowVector3d to_c = values.row(c).head<3>() - values.row(a).head<3>();
     Eigen::Matrix<double, 1, 9> gradient;
@@ -129,10 +103,10 @@ Result<Field> Binding::displacements(const Field& nodes, Field reuse,
       gradient.segment<3>(3 * axis) = gradients_(2 * static_cast<Eigen::Index>(k), axis) * to_b +
                                       gradients_(2 * static_cast<Eigen::Index>(k) + 1, axis) * to_c;
     }
-    for (const int corner : triangles_[k])
-      if (corner < node_count_) values.row(corner).tail<9>() += gradient;
+    for (const int corner : faces_.triangles[k])
+      if (corner < faces_.node_count) values.row(corner).tail<9>() += gradient;
   }
-  for (int node = 0; node < node_count_; ++node) {
+  for (int node = 0; node < faces_.node_count; ++node) {
     if (poll.after(4)) return interrupted();
     if (areas_[node] > 0) values.row(node).tail<9>() /= areas_[node];
   }
@@ -140,7 +114,7 @@ Result<Field> Binding::displacements(const Field& nodes, Field reuse,
   reuse.setZero(point_count(), 3);
   for (int point = 0; point < point_count(); ++point) {
     if (poll.after(32)) return interrupted();
-    const Corners& corners = triangles_[triangles_of_points_[point]];
+    const FaceTriangles::Corners& corners = faces_.triangles[triangles_of_points_[point]];
     const std::array<double, 3>& weights = weights_[point];
     Eigen::RowVector3d q = Eigen::RowVector3d::Zero();
     for (int k = 0; k < 3; ++k) q += weights[k] * rest_.row(corners[k]);

@@ -7,6 +7,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/transform.hpp"
+#include "pliant/mesh/triangles/face_triangles.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 
 namespace pliant {
@@ -37,18 +38,11 @@ class Binding {
                               const StopRequest& should_stop) const;
 
  private:
-  using Corners = std::array<int, 3>;
-
   Binding() = default;
-  void take_triangles(const TriangleSurface& driver, StopPoll& poll);
   void take_gradients(StopPoll& poll);
 
-  // Points of triangles are the driver's nodes, then the centres of its faces.
-  int node_count_ = 0;
-  std::vector<Corners> triangles_;
-  std::vector<int> centre_starts_ = {0};  // #centres + 1
-  std::vector<int> centre_nodes_;         // the nodes whose mean a centre is
-  Field rest_;                            // of nodes and centres, the driver's object space
+  FaceTriangles faces_;  // of the driver
+  Field rest_;           // their points, the driver's object space
 
   // Area times the gradient of w in a triangle a, b, c is (w_b - w_a) times the first of its two
   // rows, and (w_c - w_a) times the second.
