@@ -254,7 +254,7 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
     return fail(fits.error());
   }
   const Scene& scene = simulation.scene();
-  const auto forces = view_forces(scene, frames, limits.should_stop);
+  const auto forces = view_forces(simulation, frames, limits.should_stop);
   if (!forces) return fail(forces.error());
   ForceNumbers force_numbers;
   for (std::size_t k = 0; k < forces->size(); ++k) force_numbers[(*forces)[k]["name"]] = k;

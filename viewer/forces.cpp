@@ -77,7 +77,17 @@ class Named {
   std::set<std::string_view> selected_;
 };
 
-Json force_json(const Named& named, const Force& force, const FrameSpan& frames) {
+// The value of an attribute of a force's kind.
+Json value_of(const Force& force, std::string_view attribute, int frame) {
+  Json found;
+  for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
+    if (name == attribute) found = value_at(frame);
+  });
+  return found;
+}
+
+Json force_json(const Simulation& simulation, const Named& named, const Force& force,
+                const FrameSpan& frames) {
   const Group* const group = named.group_of(force);
   Json json = {{"name", force.name}, {"kind", kind_of(force)}, {"targets", force.targets}};
   if (group != nullptr) json["group"] = group->name;
@@ -89,17 +99,23 @@ Json force_json(const Named& named, const Force& force, const FrameSpan& frames)
     json["deformationRadius"] = track(force.deformation_radius, frames);
   json["forceRadius"] = track(force.force_radius, frames);
   for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
-    json[std::string(name)] = track(frames, value_at);
+    json[std::string(name)] =
+        force.follow.empty() ? track(frames, value_at) : track(frames, [&](int frame) {
+          return value_of(simulation.in_world(force, frame), name, frame);
+        });
   });
   return json;
 }
 
-Json group_json(const Named& named, const Group& group, const FrameSpan& frames) {
+Json group_json(const Simulation& simulation, const Named& named, const Group& group,
+                const FrameSpan& frames) {
   Json json = {{"name", group.name},
                {"kind", "group"},
                {"targets", group.targets},
                {"enabled", track(frames, [&](int frame) { return Json(group.enabled.at(frame)); })},
-               {"center", track(frames, [&](int frame) { return Json(group.center.at(frame)); })}};
+               {"center", track(frames, [&](int frame) {
+                  return Json(simulation.in_world(group, frame).center.at(frame));
+                })}};
   if (named.selects(group.targets))
     json["deformationRadius"] = track(group.deformation_radius, frames);
   return json;
@@ -114,17 +130,18 @@ void for_each_value(const Force& force,
   std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
 }
 
-Result<Json> view_forces(const Scene& scene, const FrameSpan& frames,
+Result<Json> view_forces(const Simulation& simulation, const FrameSpan& frames,
                          const StopRequest& should_stop) {
+  const Scene& scene = simulation.scene();
   const Named named(scene);
   Json forces = Json::array();
   for (const Force& force : scene.forces) {
     if (is_stopped(should_stop)) return interrupted();
-    forces.push_back(force_json(named, force, frames));
+    forces.push_back(force_json(simulation, named, force, frames));
   }
   for (const Group& group : scene.groups) {
     if (is_stopped(should_stop)) return interrupted();
-    forces.push_back(group_json(named, group, frames));
+    forces.push_back(group_json(simulation, named, group, frames));
   }
   return forces;
 }

@@ -13,6 +13,7 @@
 #include "pliant/feedback/surface_lines.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
+#include "pliant/simulation/simulation.hpp"
 #include "viewer/json.hpp"
 #include "viewer/lines.hpp"
 
@@ -22,16 +23,16 @@ namespace pliant::viewer {
 using ValueAt = std::function<Json(int frame)>;
 
 /// Calls `add` for each channel of a force's kind, such as `center`: the name of its attribute and
-/// its values. A position on a path is a position.
+/// its values. A position on a path is a position. What follows a surface is in its object space.
 void for_each_value(const Force& force,
                     const std::function<void(std::string_view, const ValueAt&)>& add);
 
-/// The forces and groups of a scene as a page draws them: their places and radii at each frame,
-/// from their channels. Thesis 5.2.2.
+/// The forces and groups of a scene as a page draws them: their places in the world and radii at
+/// each frame. Thesis 5.2.2.
 ///
 /// An array with one object for each, forces first. A parameter is an array with a value for each
 /// frame, or with a single value if it is constant. Errors: Interrupted.
-Result<Json> view_forces(const Scene& scene, const FrameSpan& frames,
+Result<Json> view_forces(const Simulation& simulation, const FrameSpan& frames,
                          const StopRequest& should_stop = {});
 
 /// The regions and the boxes of forces that a page draws on one surface, stored only at frames

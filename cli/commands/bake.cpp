@@ -207,7 +207,7 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
   const auto report = simulation.report(frame);
   if (!report) return fail(report.error());
-  return regions.write(*report, simulation.scene());
+  return regions.write(*report, simulation);
 }
 
 Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,

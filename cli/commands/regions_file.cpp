@@ -14,7 +14,7 @@
 namespace pliant::cli {
 namespace {
 
-// `force` is the force of the report; null: a group.
+// `force` is the force of the report, in the world; null: a group.
 Json force_json(const ForceReport& report, bool is_surface, const Force* force, int frame) {
   const auto& [name, kind, sampled, selection, push, counts, outline] = report;
   Json json = {{"name", name},
@@ -42,7 +42,7 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
   return json;
 }
 
-Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& report,
+Json surface_json(const Simulation& simulation, std::size_t surface, const SurfaceReport& report,
                   const std::map<std::string_view, const Force*>& named) {
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
@@ -58,10 +58,10 @@ Json surface_json(const Scene& scene, std::size_t surface, const SurfaceReport& 
       forces.push_back(force_json(force, report.is_surface, nullptr, report.frame));
       continue;
     }
-    forces.push_back(
-        force_json(force, report.is_surface, named.find(force.name)->second, report.frame));
+    const Force placed = simulation.in_world(*named.find(force.name)->second, report.frame);
+    forces.push_back(force_json(force, report.is_surface, &placed, report.frame));
   }
-  Json json = {{"name", scene.surfaces[surface].name},
+  Json json = {{"name", simulation.scene().surfaces[surface].name},
                {"solved", report.is_solved},
                {"selected", to_json(report.selected)},
                {"steps", report.is_solved ? report.steps.count : 0},
@@ -92,13 +92,13 @@ Result<RegionsFile> RegionsFile::create(const std::filesystem::path& file, const
   return regions;
 }
 
-Result<void> RegionsFile::write(const FrameReport& report, const Scene& scene) {
+Result<void> RegionsFile::write(const FrameReport& report, const Simulation& simulation) {
   std::map<std::string_view, const Force*> named;
-  for (const Force& force : scene.forces) named.emplace(force.name, &force);
+  for (const Force& force : simulation.scene().forces) named.emplace(force.name, &force);
   Json surfaces = Json::array();
   for (std::size_t k = 0; k < report.surfaces.size(); ++k) {
     if (was_interrupted()) return interrupted();
-    surfaces.push_back(surface_json(scene, k, report.surfaces[k], named));
+    surfaces.push_back(surface_json(simulation, k, report.surfaces[k], named));
   }
   const Json frame = {{"frame", report.frame}, {"surfaces", surfaces}};
   const char* const before = std::exchange(is_first_, false) ? "\n" : ",\n";

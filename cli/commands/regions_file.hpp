@@ -16,7 +16,7 @@ class RegionsFile {
   static Result<RegionsFile> create(const std::filesystem::path& file, const Scene& scene);
 
   /// Appends a frame. Errors: Unwritable.
-  Result<void> write(const FrameReport& report, const Scene& scene);
+  Result<void> write(const FrameReport& report, const Simulation& simulation);
 
   /// Ends the file with the counts of the solvers' work. Errors: Unwritable.
   Result<void> finish(const SolverCounts& counts);

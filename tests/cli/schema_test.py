@@ -11,7 +11,7 @@ import subprocess
 from command import Command, PLIANT, SOURCE, main
 
 SCHEMA = os.path.join(SOURCE, "docs/pliant-scene.xsd")
-FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia")
+FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia", "pressure")
 ALIKE = {"number": "1", "vector": "1 1 1", "boolean": "true", "word": None, "integer": "1", "rate": "25",
          "name": "other", "names": "sheet", "path": "none.obj", "text": "some", "one or two numbers": "1 2",
          "number or vector": "1 2 3", "one or four words": "clamped", "value": "2", "tangent": "auto",

@@ -23,7 +23,7 @@ import numpy as np
 from shapes import without_cache
 
 PLIANT, SOURCE = (os.path.abspath(argument) for argument in sys.argv[1:3])
-FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia")
+FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia", "pressure")
 TOLERANCE = 0.1
 LONGEST = 3000  # frames of a scene with constant forces
 

@@ -72,7 +72,7 @@ TEST_CASE("a batch of positions gets the bits that each gets alone", "[forces][b
       force.falloff_curve = trial % 5 == 0 ? &drawn : nullptr;
       const int first = batch_size - batch.count;
       Batch sums = batch_of(std::vector<Vector3d>(batch_size, Vector3d(1, -2, 0)));
-      add_forces(force, batch, 0, first, sums);
+      add_forces(force, batch, nullptr, 0, first, sums);
       for (int k = 0; k < first; ++k) REQUIRE(sums.at(k) == Vector3d(1, -2, 0));
       for (int k = 0; k < batch.count; ++k) {
         REQUIRE(sums.at(first + k) == Vector3d(1, -2, 0) + force_at(force, points[k]));
@@ -95,13 +95,13 @@ TEST_CASE("a force adds what it has for a node, faded like the rest of it", "[fo
   force.kind =
       InertiaForce{.offset = {1, 2, 3}, .of_nodes = std::make_shared<const Field>(of_nodes)};
   Batch sums = batch_of(std::vector<Vector3d>(batch_size, Vector3d(1, -2, 0)));
-  add_forces(force, batch_of(points), 30, 5, sums);
+  add_forces(force, batch_of(points), nullptr, 30, 5, sums);
   for (int k = 0; k < 20; ++k) {
     const Vector3d own = -1.5 * of_nodes.row(30 + k).transpose();
-    const Vector3d load = force_on(force, points[k], 30 + k);
+    const Vector3d load = force_on(force, points[k], 30 + k, Vector3d::Zero());
     CHECK(load == force_at(plain, points[k]) + own);
     CHECK(sums.at(5 + k) == Vector3d(1, -2, 0) + load);
-    CHECK(force_on(plain, points[k], 30 + k) == force_at(plain, points[k]));
+    CHECK(force_on(plain, points[k], 30 + k, Vector3d::Zero()) == force_at(plain, points[k]));
   }
 }
 

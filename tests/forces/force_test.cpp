@@ -63,13 +63,14 @@ struct Move {
   ForceKind operator()(const VortexForce& f) const {
     return VortexForce{point(f.center), rotation * f.axis, f.pull};
   }
-  ForceKind operator()(const NoiseForce& f) const {  // its lattice keeps the axes of the world
-    return NoiseForce{point(f.center), f.frequency, f.time, f.seed};
+  ForceKind operator()(const NoiseForce& f) const {
+    return NoiseForce{point(f.center), f.frequency, f.time, f.seed, rotation};
   }
   ForceKind operator()(const InertiaForce& f) const {
     return InertiaForce{rotation * f.linear * rotation.transpose(), point(f.origin),
                         rotation * f.offset};
   }
+  ForceKind operator()(const PressureForce& f) const { return PressureForce{point(f.center)}; }
   ForceKind operator()(const SampledCustomForce& f) const {
     const auto back = [*this](const Vector3d& p) -> Vector3d {
       return rotation.transpose() * (p - translation);

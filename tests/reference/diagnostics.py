@@ -22,7 +22,7 @@ def is_exact_distance(force, frame, point, radius):
     if force.kind == "vortex":
         return False
     p, used = exact(point), []
-    if force.kind in ("point", "radial", "noise"):
+    if force.kind in ("point", "radial", "noise", "pressure"):
         nearest = exact(force.sample("center", frame))
     else:
         start, end = exact(force.sample("from", frame)), exact(force.sample("to", frame))

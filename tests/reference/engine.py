@@ -5,7 +5,8 @@ Nothing is shared with the library under test.
 
 import numpy as np
 
-from forces import GroupSphere, Transform, distances, falloff, unit_forces
+from carrier import unit_normals
+from forces import GroupSphere, Transform, distances, falloff, pushes
 from maps import check_material, check_yield
 from region_motion import RegionMotion
 from regions import bounding_box, combined, common_box, do_meet, interior_of, islands_of
@@ -80,7 +81,7 @@ class SurfaceRun:
                 delta = distances(force, frame, points)
                 own[force] = bounding_box(delta < force.sample("deformationRadius", frame))
         for group in groups:
-            offset = points - group.center(frame)
+            offset = points - group.place(frame)
             delta = np.sqrt((offset**2).sum(axis=-1))
             box = bounding_box(delta < float(group.deformation_radius(frame)[0]))
             own[group] = box
@@ -139,9 +140,15 @@ class SurfaceRun:
             margin = float(np.abs(moved / length - 1).min())
             self.diagnostics.settle_margin = min(self.diagnostics.settle_margin, margin)
 
+    def normals(self, points, transform):
+        """The normals of the nodes at world positions (SPEC 7)."""
+        return unit_normals(self.surface.grid.face_nodes, points.reshape(-1, 3),
+                            transform).reshape(points.shape)
+
     def load(self, frame, points, forces, transform):
         """The load at every node of the surface, in object space (SPEC 5, step 3; SPEC 7)."""
         total = np.zeros_like(points)
+        normals = self.normals(points, transform)  # of all nodes
         for force in forces:
             delta = distances(force, frame, points)
             radius = force.sample("forceRadius", frame)
@@ -151,7 +158,7 @@ class SurfaceRun:
             i0, i1, j0, j1 = box
             inside = np.s_[i0:i1 + 1, j0:j1 + 1]
             strength = force.sample("magnitude", frame) * falloff(force, delta[inside] / radius)
-            push = unit_forces(force, frame, points[inside], self, inside)
+            push = pushes(force, frame, points[inside], self, inside, normals[inside])
             if force.kind == "inertia" and "density" in self.surface.maps:
                 push = push * self.surface.maps["density"][inside][..., None]
             total[inside] += strength[..., None] * push

@@ -46,7 +46,7 @@ class Transform:
 
 def closest_point(force, frame, points):
     """The point of the force's centre or segment that is closest to each of `points`."""
-    if force.kind in ("point", "radial", "noise"):
+    if force.kind in ("point", "radial", "noise", "pressure"):
         return np.broadcast_to(force.sample("center", frame), points.shape)
     if force.kind in ("uniform", "inertia"):
         return points
@@ -86,7 +86,7 @@ def falloff(force, s):
 
 def has_direction(force):
     """Whether the force's direction does not depend on the direction from a node to the force."""
-    return (force.kind in ("point", "uniform", "noise", "inertia") or
+    return (force.kind in ("point", "uniform", "noise", "inertia", "pressure") or
             (force.kind == "line" and force.channels["direction"]))
 
 
@@ -122,14 +122,15 @@ def unit_forces(force, frame, points, run, nodes):
     """The force per magnitude and falloff at each point, in world space; `run` is the surface's, of
     which the points are these `nodes`."""
     if force.kind == "noise":
-        place = force.sample("frequency", frame) * (points - force.sample("center", frame))
+        turn = force.carrier.rotation(frame, force.first_place(frame)) if force.carrier else np.eye(3)
+        place = force.sample("frequency", frame) * ((points - force.sample("center", frame)) @ turn)
         # Each frame since the start at its own rate.
         start = run.scene.start
         rates = [force.sample("rate", before) for before in range(start, frame)]
         rates += [-force.sample("rate", before) for before in range(frame, start)]  # in a preroll
         time = (force.sample("rate", start) * start + sum(rates)) / float(run.scene.fps)
         time = np.broadcast_to(time, points.shape[:-1] + (1,))
-        return noise(force.seed, np.concatenate([place, time], axis=-1))
+        return noise(force.seed, np.concatenate([place, time], axis=-1)) @ turn.T
     if force.kind == "inertia":
         before, now, after = (Transform(run.surface, frame + step) for step in (-1, 0, 1))
         p = np.linalg.solve(now.linear, (points - now.translate).reshape(-1, 3).T).T
@@ -148,6 +149,16 @@ def unit_forces(force, frame, points, run, nodes):
         outward = unit_directions(force, frame, points)
         return np.cross(axis / length, outward) - force.sample("pull", frame) * outward
     return unit_directions(force, frame, points)
+
+
+def pushes(force, frame, points, run, nodes, normals):
+    """The force per magnitude and falloff on nodes with these normals."""
+    if force.kind == "pressure":
+        return normals
+    free = unit_forces(force, frame, points, run, nodes)
+    if force.along == "free":
+        return free
+    return (free * normals).sum(axis=-1)[..., None] * normals
 
 
 def unit_directions(force, frame, points):
@@ -170,7 +181,7 @@ class GroupSphere:
 
     def __init__(self, group):
         self.channels = {"direction": True}
-        self.center = group.center
+        self.center = group.place
 
     def sample(self, name, frame):
         assert name == "center"

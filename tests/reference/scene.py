@@ -10,6 +10,7 @@ from fractions import Fraction
 import numpy as np
 
 from caches import Cache, NoCache
+from carrier import Carrier
 from curves import Constant, Curve, Key
 from maps import node_uvs, read_maps
 from triangle_mesh import TriangleMesh, read_obj_corners
@@ -32,7 +33,9 @@ KIND_CHANNELS = {
     "uniform": {"direction": (0, 1, 0)},
     "vortex": {"center": (0, 0, 0), "axis": (0, 1, 0), "pull": 0},
     "noise": {"center": (0, 0, 0), "frequency": 1, "rate": 1},
-    "inertia": {"magnitude": 1}}
+    "inertia": {"magnitude": 1},
+    "pressure": {"center": (0, 0, 0)}}
+PLACES, DIRECTIONS = ("center", "from", "to"), ("direction", "axis")
 FALLOFFS = ("constant", "linear", "smooth", "gaussian")
 TANGENT_KINDS = ("auto", "spline", "flat", "linear", "plateau")
 LOOPS = ("repeat", "repeatOffset", "mirror")
@@ -105,7 +108,7 @@ def read_channel(element, owner, name, default, is_boolean=False):
 class Grid:
     """Vertices with their lattice: `node_of[k]` is the (i, j) of vertex k, `rest` is M x N x 3."""
 
-    def __init__(self, vertices, u, v):
+    def __init__(self, vertices, u, v, faces):
         self.vertices = vertices
         column, self.hu, self.columns = lattice_index(u)
         row, self.hv, self.rows = lattice_index(v)
@@ -119,6 +122,8 @@ class Grid:
         self.uvs = np.full((self.columns, self.rows, 2), np.nan)
         for k in range(len(vertices) - 1, -1, -1):  # the lowest vertex last
             self.uvs[tuple(self.node_of[k])] = u[k], v[k]
+        # As numbers of nodes, row by row of an array of nodes.
+        self.face_nodes = [[int(i) * self.rows + int(j) for i, j in self.node_of[face]] for face in faces]
 
     def to_vertices(self, node_values):
         """Values per vertex, in the order of the source mesh."""
@@ -157,7 +162,9 @@ def flat_grid(element):
             vertices.append((x, 0.0, z))
             u.append(i / (columns - 1))
             v.append(j / (rows - 1))
-    return Grid(np.array(vertices), u, v)
+    faces = [[j * columns + i, (j + 1) * columns + i, (j + 1) * columns + i + 1, j * columns + i + 1]
+             for j in range(rows - 1) for i in range(columns - 1)]
+    return Grid(np.array(vertices), u, v, faces)
 
 
 def read_obj(path):
@@ -167,7 +174,7 @@ def read_obj(path):
     for vertex, uv in (corner for face in faces for corner in face):
         assert tuple(uv_of.setdefault(vertex, uv)) == tuple(uv), "a vertex with several UVs"
     u, v = zip(*(uv_of[k] for k in range(len(positions))))
-    return Grid(positions, u, v)
+    return Grid(positions, u, v, [[vertex for vertex, _ in face] for face in faces])
 
 
 def read_surface(element, folder):
@@ -212,6 +219,7 @@ class Surface:
             assert mesh.get("wrap", "none") == "none"
             self.grid = read_obj(os.path.join(folder, mesh.get("file")))
         self.shape = NoCache(self.grid.vertices)
+        self.is_animated = cache is not None
         if cache is not None:
             first = None if first is None else float(first)
             self.shape = Cache(os.path.join(folder, cache), fps, scene_start, first)
@@ -278,10 +286,29 @@ class Surface:
         return self.is_enabled and frame >= self.start_frame and self.sample("timeScale", frame) > 0
 
 
-class Force:
+class Follower:
+    """What may follow a surface: its places and directions are in the object space of that one."""
+
+    carrier = None  # of the surface that it follows
+
+    def carried(self, name, frame, value):
+        if self.carrier is None or value is None or name not in PLACES + DIRECTIONS:
+            return value
+        if name in PLACES:
+            return self.carrier.place(frame, value)
+        return self.carrier.turn(frame, self.first_place(frame)) @ value
+
+    def first_place(self, frame):
+        channel = self.center if hasattr(self, "center") else self.channels[
+            "from" if self.kind == "line" else "center"]
+        return channel(frame)
+
+
+class Force(Follower):
     """A force of any kind; a child of a group has no region of its own."""
 
     def __init__(self, element, is_in_group, scene_seed):
+        self.follow, self.along = element.get("follow"), element.get("along", "free")
         self.kind = element.tag
         self.name = element.get("name")
         self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
@@ -304,13 +331,14 @@ class Force:
         if channel is None:
             return None
         value = channel(frame)
-        return float(value[0]) if len(value) == 1 else value
+        return float(value[0]) if len(value) == 1 else self.carried(name, frame, value)
 
 
-class Group:
+class Group(Follower):
     """A <group>: one deformation region, and forces that only add force (SPEC 7)."""
 
     def __init__(self, element, scene_seed):
+        self.follow = element.get("follow")
         self.name = element.get("name")
         self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
         self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
@@ -318,6 +346,9 @@ class Group:
         self.deformation_radius = read_channel(element, element, "deformationRadius", 1)
         self.forces = [Force(child, True, scene_seed) for child in element
                        if child.tag in KIND_CHANNELS]
+
+    def place(self, frame):
+        return self.carried("center", frame, self.center(frame))
 
 
 class Scene:
@@ -339,3 +370,8 @@ class Scene:
             else:
                 assert element.tag == "group", element.tag
                 self.groups.append(Group(element, seed))
+        surfaces = {surface.name: surface for surface in self.surfaces}
+        followers = self.forces + self.groups + [f for g in self.groups for f in g.forces]
+        for one in followers:
+            if one.follow:
+                one.carrier = Carrier(surfaces[one.follow], self.start)

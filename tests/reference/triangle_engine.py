@@ -5,7 +5,8 @@ Nothing is shared with the library under test.
 
 import numpy as np
 
-from forces import GroupSphere, Transform, distances, falloff, unit_forces
+from carrier import unit_normals
+from forces import GroupSphere, Transform, distances, falloff, pushes
 from stepping import check_coefficients, find_cycle, steps_of_frame, with_integrator
 from triangle_plate import Steps, advance_exactly, triangle_material
 from triangle_region import Region, snapped
@@ -106,6 +107,7 @@ class TriangleRun:
             return
         self.diagnostics.solves.append((frame, surface.name, len(nodes)))
         load = np.zeros((len(nodes), 3))
+        normals = unit_normals(mesh.face_nodes, points, transform)
         for force in pushing:
             delta = distances(force, frame, points)
             radius = force.sample("forceRadius", frame)
@@ -115,7 +117,7 @@ class TriangleRun:
                 continue
             at = np.array(nodes)[is_pushed]
             strength = force.sample("magnitude", frame) * falloff(force, delta[at] / radius)
-            push = unit_forces(force, frame, points[at], self, at)
+            push = pushes(force, frame, points[at], self, at, normals[at])
             if force.kind == "inertia" and "density" in surface.maps:
                 push = push * surface.maps["density"][at][:, None]
             load[is_pushed] += (share[is_pushed] * strength)[:, None] * push

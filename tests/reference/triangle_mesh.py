@@ -115,6 +115,7 @@ class TriangleMesh:
                 self.triangles.append((node, nodes[following], centre))
                 coordinates.append([uvs[k], uvs[following], middle] if has_uvs else None)
         assert self.triangles
+        self.face_nodes = [nodes for nodes, _ in self.faces]
         self.points = np.concatenate([self.rest] + [
             self.rest[nodes].mean(axis=0)[None] for nodes in self.centre_corners])
 

@@ -20,6 +20,7 @@ TEST_CASE("every attribute that takes keys is a channel", "[scene][channels]") {
                  "<point name=\"point\"/><radial name=\"radial\"/>"
                  "<line name=\"line\" direction=\"0 1 0\"/><uniform name=\"uniform\"/>"
                  "<vortex name=\"vortex\"/><noise name=\"noise\"/><inertia name=\"inertia\"/>"
+                 "<pressure name=\"pressure\"/>"
                  "<group name=\"group\"/>"));
   std::set<std::string> paths;
   for (const NamedChannel& channel : channels_of(scene)) {

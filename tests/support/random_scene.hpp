@@ -290,7 +290,7 @@ inline RandomScene::Node RandomScene::surface() {
 
 inline RandomScene::Node RandomScene::force(bool is_in_group) {
   const std::string kind = chance_.pick(
-      {"point", "radial", "line", "uniform", "vortex", "noise", "inertia", "point", "radial"});
+      {"point", "radial", "line", "uniform", "vortex", "noise", "inertia", "pressure", "radial"});
   Node node{kind, {{"name", name(kind.c_str())}}};
   add_switch(node);
   if (!surfaces_.empty() && some() && !is_in_group) {
@@ -309,6 +309,11 @@ inline RandomScene::Node RandomScene::force(bool is_in_group) {
   }
   if (kind == "point" || kind == "uniform" || kind == "line")
     add_channel(node, "direction", true, false);
+  const bool has_place = kind != "uniform" && kind != "inertia";
+  const bool has_direction = has_place && kind != "radial" && kind != "pressure";
+  if (has_place && !surfaces_.empty() && chance_.once_in(4))
+    node.attributes.emplace_back("follow", surfaces_.back());
+  if (has_direction && chance_.once_in(4)) node.attributes.emplace_back("along", "normal");
   if (kind == "vortex") add_channel(node, "pull", false, false);
   if (kind == "noise" && some()) node.attributes.emplace_back("seed", "77");
   if (some()) {

@@ -30,8 +30,10 @@ struct BatchNumbers {
 BatchNumbers distances(const ForceKind& force, const Batch& points);
 
 /// Adds `force_on` of each position to `sums`, from index `first` on; the positions are those of
-/// nodes from `node` on. Requires: force.force_radius > 0.
-void add_forces(const SampledForce& force, const Batch& points, int node, int first, Batch& sums);
+/// nodes from `node` on. `normals`: of these nodes, not null if `uses_normals`. Requires:
+/// force.force_radius > 0.
+void add_forces(const SampledForce& force, const Batch& points, const Batch* normals, int node,
+                int first, Batch& sums);
 
 /// A lower bound of `distance`, rounding included, for every position whose components are between
 /// those of `low` and `high`. For a program's own function the bound is 0.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include "pliant/forces/batch.hpp"
 #include "pliant/forces/noise.hpp"
@@ -148,16 +149,34 @@ struct NoiseKernel : AroundCenter {
 };
 inline NoiseKernel kernel(const NoiseForce& force) { return {{force.center}, force}; }
 
+Triple times(const Matrix3d& matrix, const Triple& a) {
+  const auto row = [&](int k) { return dot(Vector3d(matrix.row(k)), a); };
+  return {row(0), row(1), row(2)};
+}
+
+struct TurnedNoiseKernel : AroundCenter {
+  const NoiseForce& force;
+  Matrix3d back = force.turn->transpose();
+
+  Triple unit_force(const Triple& p) const {
+    const Triple place = force.frequency * times(back, p - center);
+    return times(*force.turn, smooth_noise(force.seed, place, force.time));
+  }
+};
+
 struct InertiaKernel : Everywhere {
   const InertiaForce& force;
 
   Triple unit_force(const Triple& p) const {
-    const Triple q = p - force.origin;
-    const auto row = [&](int k) { return dot(Vector3d(force.linear.row(k)), q); };
-    return force.offset + Triple(row(0), row(1), row(2));
+    return force.offset + times(force.linear, p - force.origin);
   }
 };
 inline InertiaKernel kernel(const InertiaForce& force) { return {{}, force}; }
+
+struct PressureKernel : AroundCenter {
+  Triple unit_force(const Triple&) const { return {}; }
+};
+inline PressureKernel kernel(const PressureForce& force) { return {{force.center}}; }
 
 struct CustomKernel {
   const SampledCustomForce& force;
@@ -178,6 +197,11 @@ auto with_kernel(const LineForce& line, const Use& use) {
   const AroundSegment around{line.from, line.to};
   if (!line.direction) return use(OutwardLineKernel{around});
   return use(Directed<AroundSegment>{around, normalised(*line.direction)});
+}
+template <class Use>
+auto with_kernel(const NoiseForce& noise, const Use& use) {
+  if (!noise.turn) return use(kernel(noise));
+  return use(TurnedNoiseKernel{{noise.center}, noise});
 }
 template <class Use>
 auto with_kernel(const ForceKind& force, const Use& use) {
@@ -216,6 +240,13 @@ const Field* vectors_of_nodes(const SampledForce& force) {
   return inertia ? inertia->of_nodes.get() : nullptr;
 }
 
+// The force per unit of magnitude and falloff on a node with that normal.
+template <class Kernel>
+Triple unit_force_along(const Kernel& kind, const Triple& p, const Triple& normal) {
+  if constexpr (std::is_same_v<Kernel, PressureKernel>) return normal;
+  return dot(normal, kind.unit_force(p)) * normal;
+}
+
 // Magnitude x falloff of a force whose distance is 0 everywhere.
 double strength_everywhere(const SampledForce& force) {
   double strength = 0;
@@ -239,6 +270,8 @@ double NoiseForce::distance(const Vector3d& p) const { return distance_of(*this,
 Vector3d NoiseForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 double InertiaForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
 Vector3d InertiaForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
+double PressureForce::distance(const Vector3d& p) const { return distance_of(*this, p); }
+Vector3d PressureForce::unit_force(const Vector3d& p) const { return unit_force_of(*this, p); }
 
 SampledForce region_sphere(const Vector3d& center, double deformation_radius) {
   return {.kind = PointForce{center, Vector3d::Zero()},
@@ -259,7 +292,14 @@ Vector3d force_at(const SampledForce& force, const Vector3d& p) {
   });
 }
 
-Vector3d force_on(const SampledForce& force, const Vector3d& p, int node) {
+Vector3d force_on(const SampledForce& force, const Vector3d& p, int node, const Vector3d& normal) {
+  if (uses_normals(force)) {
+    return with_kernel(force.kind, [&](const auto& kind) -> Vector3d {
+      double strength = kind.distance(p);
+      fade(force, {&strength, 1});
+      return strength * unit_force_along(kind, p, normal);
+    });
+  }
   Vector3d load = force_at(force, p);
   if (const Field* const of_nodes = vectors_of_nodes(force)) {
     load += strength_everywhere(force) * of_nodes->row(node).transpose();
@@ -271,10 +311,12 @@ BatchNumbers distances(const ForceKind& force, const Batch& points) {
   return with_kernel(force, [&](const auto& kind) { return distances_from(kind, points); });
 }
 
-void add_forces(const SampledForce& force, const Batch& points, int node, int first, Batch& sums) {
-  if (vectors_of_nodes(force)) {
+void add_forces(const SampledForce& force, const Batch& points, const Batch* normals, int node,
+                int first, Batch& sums) {
+  if (uses_normals(force) || vectors_of_nodes(force)) {
     for (int k = 0; k < points.count; ++k) {
-      const Vector3d load = force_on(force, points.at(k), node + k);
+      const Vector3d normal = normals ? normals->at(k) : Vector3d(Vector3d::Zero());
+      const Vector3d load = force_on(force, points.at(k), node + k, normal);
       sums.x[first + k] += load.x();
       sums.y[first + k] += load.y();
       sums.z[first + k] += load.z();

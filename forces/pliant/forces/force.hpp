@@ -79,8 +79,9 @@ struct NoiseForce {
   double frequency = 1;         ///< [cells/length]
   double time = 0;              ///< [cells]
   std::uint64_t seed = 0;
+  std::optional<Matrix3d> turn = {};  ///< the rotation of the pattern and its vectors; null: none
 
-  auto values() const { return std::tie(center, frequency, time, seed); }
+  auto values() const { return std::tie(center, frequency, time, seed, turn); }
   double distance(const Vector3d& p) const;      ///< to the centre
   Vector3d unit_force(const Vector3d& p) const;  ///< components in [-1, 1]
 };
@@ -98,6 +99,15 @@ struct InertiaForce {
   Vector3d unit_force(const Vector3d& p) const;  ///< without that of nodes
 };
 
+/// Pushes along the normals of a surface: inflates it, or sucks it in if it is negative. SPEC 7.
+struct PressureForce {
+  Vector3d center = {0, 0, 0};  ///< world [length]
+
+  auto values() const { return std::tie(center); }
+  double distance(const Vector3d& p) const;
+  Vector3d unit_force(const Vector3d& p) const;  ///< 0: a position has no normal
+};
+
 /// A kind of force of an embedding program, at one frame. Requires: neither function is empty.
 struct SampledCustomForce {
   /// None: a program identifies its functions by `CustomForce::key`.
@@ -108,7 +118,7 @@ struct SampledCustomForce {
 };
 
 using ForceKind = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
-                               NoiseForce, InertiaForce, SampledCustomForce>;
+                               NoiseForce, InertiaForce, PressureForce, SampledCustomForce>;
 
 /// A force at one frame.
 struct SampledForce {
@@ -120,7 +130,14 @@ struct SampledForce {
   /// An authored curve over s = distance / force radius that replaces `falloff`; for s > 1 its
   /// value at 1 is used. Null: `falloff`. Owned by the scene.
   const Curve<1>* falloff_curve = nullptr;
+  /// Only the part of the unit force along the normal of the node pushes it. SPEC 7.
+  bool is_along_normal = false;
 };
+
+/// Whether the force on a node depends on its normal.
+inline bool uses_normals(const SampledForce& force) {
+  return force.is_along_normal || std::holds_alternative<PressureForce>(force.kind);
+}
 
 /// A sphere that selects a region and pushes nothing, as a group does. The forces in the group have
 /// a deformation radius of 0, so that "strictly less" selects nothing for them. SPEC 7.
@@ -133,10 +150,11 @@ double distance(const ForceKind& force, const Vector3d& p);
 Vector3d unit_force(const ForceKind& force, const Vector3d& p);
 
 /// The force on a node at p, for any p: the caller checks the force box. Requires: force_radius >
-/// 0. [length b/uv^4]
+/// 0, and not `uses_normals`. [length b/uv^4]
 Vector3d force_at(const SampledForce& force, const Vector3d& p);
 
 /// The same on a node of a surface at p, by its number, with what the force has for that node.
-Vector3d force_on(const SampledForce& force, const Vector3d& p, int node);
+/// `normal`: of the node, world; of length 1 or 0. Used only if `uses_normals`.
+Vector3d force_on(const SampledForce& force, const Vector3d& p, int node, const Vector3d& normal);
 
 }  // namespace pliant

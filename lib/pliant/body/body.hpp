@@ -14,6 +14,7 @@
 #include "pliant/plate/plate.hpp"
 #include "pliant/plate/plate_problem.hpp"
 #include "pliant/plate/solver_choice.hpp"
+#include "pliant/region/placed_nodes.hpp"
 
 namespace pliant {
 
@@ -122,8 +123,14 @@ class Body {
 
  protected:
   /// `plastic_places`: the nodes or triangles that have plastic curvatures if the body yields.
+  /// `faces` null: no force uses normals.
   Body(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
-       std::shared_ptr<const NodeFactors> factors);
+       std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeFaces> faces);
+
+  /// Nodes in object space (#nodes x 3), as forces use them. Requires: they outlive the result.
+  PlacedNodes placed(const Field& nodes, const BodyInputs& inputs) const {
+    return {nodes, inputs.transform, densities(), faces_.get()};
+  }
 
   /// The nodes' factors of density; null: 1.
   const std::vector<double>* densities() const { return factors_ ? &factors_->density : nullptr; }
@@ -165,6 +172,7 @@ class Body {
   Eigen::Index plastic_places_;
   BodySettings settings_;
   std::shared_ptr<const NodeFactors> factors_;
+  std::shared_ptr<const NodeFaces> faces_;
   BodyState state_;
 };
 

@@ -77,9 +77,10 @@ class GridPatchPlate final : public PatchPlate {
 }  // namespace
 
 GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
-                   RunContext context, std::shared_ptr<const NodeFactors> factors)
+                   RunContext context, std::shared_ptr<const NodeFactors> factors,
+                   std::shared_ptr<const NodeFaces> faces)
     : ElasticBody(std::move(rest), grid.node_count(), settings, std::move(context),
-                  std::move(factors)),
+                  std::move(factors), std::move(faces)),
       grid_(grid),
       solvers_(solver, context_) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
@@ -94,8 +95,8 @@ Result<StepPlan> GridBody::look(const BodyInputs& inputs) const {
 
 Push GridBody::push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const {
   Field room;
-  return pliant::push_of(grid_, {measured(inputs, room), inputs.transform, densities()},
-                         inputs.forces[force], plan.selection.forces[force].force,
+  return pliant::push_of(grid_, placed(measured(inputs, room), inputs), inputs.forces[force],
+                         plan.selection.forces[force].force,
                          plan.selection.patches_of_force(force));
 }
 
@@ -125,7 +126,7 @@ std::unique_ptr<PatchPlate> GridBody::plate_of(const BodyInputs& inputs, const S
 Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const {
   Selection& selection = plan.selection;
   PLIANT_EXPECTS(fits(inputs));
-  room.tiles.update(grid_, {measured(inputs, room.measured), inputs.transform, densities()});
+  room.tiles.update(grid_, placed(measured(inputs, room.measured), inputs));
   if (!room.tiles.are_finite()) {
     return fail(ErrorCode::NotFinite, "a position in world space is not finite");
   }

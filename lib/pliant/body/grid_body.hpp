@@ -19,10 +19,11 @@ class GridBody final : public ElasticBody {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
   /// `solver` and `context` are those of its plates; the context's profile receives the times of
-  /// its steps. `factors` null: the material is even.
+  /// its steps. `factors` null: the material is even. `faces` null: no force uses normals.
   GridBody(const Grid& grid, Field rest, const BodySettings& settings,
            SolverChoice solver = SolverChoice::Auto, RunContext context = {},
-           std::shared_ptr<const NodeFactors> factors = {});
+           std::shared_ptr<const NodeFactors> factors = {},
+           std::shared_ptr<const NodeFaces> faces = {});
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 

@@ -125,7 +125,7 @@ TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, Point
                            const BodySettings& settings, SolverChoice solver, RunContext context,
                            std::shared_ptr<const NodeFactors> factors)
     : ElasticBody(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
-                  std::move(context), std::move(factors)),
+                  std::move(context), std::move(factors), surface),
       surface_(std::move(surface)),
       tree_(std::move(tree)),
       is_border_(border_nodes(*surface_)),
@@ -231,8 +231,8 @@ Result<void> TriangleBody::select_all(TriangleSelection& selection) const {
 Result<void> TriangleBody::weigh(const TriangleSurface& surface, const PointTree& tree,
                                  const BodyInputs& inputs, TriangleSelection& selection) const {
   Field room;
-  const PlacedNodes nodes(measured(inputs, room), inputs.transform, densities());
-  const PlacedNodes rest_nodes(surface.rest, inputs.transform, densities());
+  const PlacedNodes nodes = placed(measured(inputs, room), inputs);
+  const PlacedNodes rest_nodes = placed(surface.rest, inputs);
   for (const int node : selection.level_set.nodes) {
     if (!nodes.at(node).allFinite()) {
       return fail(ErrorCode::NotFinite, "a position in world space is not finite");

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/format/description.hpp"
 
 namespace pliant {
@@ -27,32 +28,47 @@ struct Changes {
   bool operator()(const CustomForce&) const { return true; }
 };
 
-bool changes(const Surface& surface) {
+bool moves(const Surface& surface) {
   const auto& [translate, rotate, scale, order] = surface.transform;
-  const MaterialChannels& material = surface.material;
   return surface.is_animated() || translate.is_animated() || rotate.is_animated() ||
-         scale.is_animated() || material.b.is_animated() || material.c.is_animated() ||
+         scale.is_animated();
+}
+
+bool changes(const Surface& surface) {
+  const MaterialChannels& material = surface.material;
+  return moves(surface) || material.b.is_animated() || material.c.is_animated() ||
          material.d.is_animated();
 }
 
-bool changes(const Force& force) {
-  return force.deformation_radius.is_animated() || force.force_radius.is_animated() ||
-         std::visit(Changes{}, force.kind);
+// Whether what a force or group follows moves.
+template <class Follower>
+bool is_carried(const Scene& scene, const Follower& follower) {
+  return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
+    return surface.name == follower.follow && moves(surface);
+  });
 }
 
-bool changes(const Group& group) {
-  return group.center.is_animated() || group.deformation_radius.is_animated();
+bool changes(const Scene& scene, const Force& force) {
+  return force.deformation_radius.is_animated() || force.force_radius.is_animated() ||
+         std::visit(Changes{}, force.kind) || is_carried(scene, force);
+}
+
+bool changes(const Scene& scene, const Group& group) {
+  return group.center.is_animated() || group.deformation_radius.is_animated() ||
+         is_carried(scene, group);
 }
 
 }  // namespace
 
 ActingForces::ActingForces(const Scene& scene, const Surface& surface,
                            std::vector<std::size_t> forces, const std::vector<std::size_t>& groups,
-                           std::shared_ptr<const AnimatedShape> animation)
+                           const RestShape* shape)
     : scene_(scene),
       surface_(surface),
       forces_(std::move(forces)),
-      animation_(std::move(animation)) {
+      animation_(shape ? shape->animation : nullptr),
+      carriers_(shape && shape->carriers ? shape->carriers
+                                         : std::make_shared<const Carriers>(scene)) {
   std::map<std::string_view, const Group*> named;
   for (const std::size_t group : groups)
     named.emplace(scene.groups[group].name, &scene.groups[group]);
@@ -72,7 +88,7 @@ BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& fault
     const Force& force = scene_.forces[forces_[k]];
     if (!pliant::is_enabled(force, group_of_[k], frame)) continue;
     inputs.forces.push_back(
-        sample_force(scene_, force, surface_, frame, faults, clocks_[k].get(), shape));
+        sample_force(scene_, force, surface_, frame, faults, *carriers_, clocks_[k].get(), shape));
     inputs.selectors.push_back(static_cast<int>(inputs.selectors.size()));
     selecting.push_back(group_of_[k]);
   }
@@ -82,7 +98,7 @@ BodyInputs ActingForces::at(int frame, const std::shared_ptr<ForceFaults>& fault
     if (!group->enabled.at(frame)) continue;
     const auto selector = static_cast<int>(inputs.forces.size());
     selectors.emplace(group, selector);
-    inputs.forces.push_back(sample_group(*group, frame));
+    inputs.forces.push_back(sample_group(scene_, *group, frame, *faults, *carriers_));
     inputs.selectors.push_back(selector);
   }
   for (std::size_t k = 0; k < selecting.size(); ++k) {
@@ -128,9 +144,9 @@ bool ActingForces::selects_at(int frame) const {
 
 bool ActingForces::stand_still() const {
   return !changes(surface_) && std::none_of(forces_.begin(), forces_.end(), [&](std::size_t force) {
-    return changes(scene_.forces[force]);
-  }) && std::none_of(groups_.begin(), groups_.end(), [](const Group* group) {
-    return changes(*group);
+    return changes(scene_, scene_.forces[force]);
+  }) && std::none_of(groups_.begin(), groups_.end(), [&](const Group* group) {
+    return changes(scene_, *group);
   });
 }
 

@@ -14,10 +14,9 @@ class ActingForces {
  public:
   /// Indices in the scene, ascending, of forces that target the surface and of groups that select
   /// on it. Requires: the scene outlives this.
-  /// `animation`: of the surface's rest shape; null: none.
+  /// `shape`: the surface's rest shape; null: it stands still, and nothing follows a cache.
   ActingForces(const Scene& scene, const Surface& surface, std::vector<std::size_t> forces,
-               const std::vector<std::size_t>& groups,
-               std::shared_ptr<const AnimatedShape> animation = {});
+               const std::vector<std::size_t>& groups, const RestShape* shape = nullptr);
 
   /// The inputs at a frame, as `sample_inputs` would return them with only these forces and groups.
   BodyInputs at(int frame, const std::shared_ptr<ForceFaults>& faults) const;
@@ -51,6 +50,7 @@ class ActingForces {
   std::vector<const Group*> groups_;
   std::vector<std::unique_ptr<NoiseClock>> clocks_;  // of each force; null: not needed
   std::shared_ptr<const AnimatedShape> animation_;
+  std::shared_ptr<const Carriers> carriers_;
 };
 
 }  // namespace pliant

@@ -29,8 +29,7 @@ std::vector<PreviewCase> cases_of(const Scene& scene, const RestShape& shape, st
     preview.surface = index;
     preview.of = of;
     preview.index = which;
-    cases.push_back(
-        {std::move(preview), {scene, surface, std::move(forces), groups, shape.animation}});
+    cases.push_back({std::move(preview), {scene, surface, std::move(forces), groups, &shape}});
   };
   std::map<std::string_view, std::size_t> group_named;
   for (std::size_t k = 0; k < scene.groups.size(); ++k) {

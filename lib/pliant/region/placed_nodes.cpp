@@ -4,6 +4,16 @@
 
 namespace pliant {
 
+PlacedNodes::PlacedNodes(const Field& positions, const Transform& transform,
+                         const std::vector<double>* densities, const NodeFaces* faces)
+    : positions_(&positions),
+      transform_(transform),
+      densities_(densities && !densities->empty() ? densities : nullptr),
+      faces_(faces) {
+  // Of a transform that mirrors they point to the same side of the surface as before.
+  if (faces_) to_normals_ = inverse_linear(transform).transpose();
+}
+
 Batch PlacedNodes::batch(int first, int count) const {
   const double* const x = positions_->col(0).data() + first;
   const double* const y = positions_->col(1).data() + first;
@@ -39,13 +49,23 @@ Batch PlacedNodes::batch(std::span<const int> nodes) const {
 }
 
 Vector3d PlacedNodes::load_on(int node, const SampledForce& force) const {
-  const Vector3d load = force_on(force, at(node), node);
+  const Vector3d side = uses_normals(force) ? normal(node) : Vector3d(Vector3d::Zero());
+  const Vector3d load = force_on(force, at(node), node, side);
   return is_weighted(force) ? Vector3d(load * (*densities_)[static_cast<std::size_t>(node)]) : load;
 }
 
 void PlacedNodes::add_loads(int first, int count, const SampledForce& force, int place,
                             Batch& sums) const {
-  if (!is_weighted(force)) return add_forces(force, batch(first, count), first, place, sums);
+  if (!is_weighted(force)) {
+    Batch normals;
+    const bool has_normals = uses_normals(force);
+    for (int k = 0; has_normals && k < count; ++k) {
+      const Vector3d side = normal(first + k);
+      normals.x[k] = side.x(), normals.y[k] = side.y(), normals.z[k] = side.z();
+    }
+    return add_forces(force, batch(first, count), has_normals ? &normals : nullptr, first, place,
+                      sums);
+  }
   for (int k = 0; k < count; ++k) {
     const Vector3d load = load_on(first + k, force);
     sums.x[place + k] += load.x();

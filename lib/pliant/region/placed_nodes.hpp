@@ -7,11 +7,12 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/batch.hpp"
+#include "pliant/mesh/node_faces.hpp"
 
 namespace pliant {
 
 /// Nodes in world space, as forces use them; transformed on demand, so that there is no copy. Keeps
-/// a reference to the positions, and to the factors of density, which must outlive it.
+/// a reference to the positions, the faces and the factors of density, which must outlive it.
 class PlacedNodes {
  public:
   /// #nodes x 3, in world space. Not explicit: the positions are used unchanged.
@@ -19,12 +20,9 @@ class PlacedNodes {
 
   /// #nodes x 3, in object space.
   /// `densities`: the factor of each node's density, which its inertia is multiplied by; null or
-  /// empty: 1.
+  /// empty: 1. `faces`: those of the surface, for its normals; null if no force uses them.
   PlacedNodes(const Field& positions, const Transform& transform,
-              const std::vector<double>* densities = nullptr)
-      : positions_(&positions),
-        transform_(transform),
-        densities_(densities && !densities->empty() ? densities : nullptr) {}
+              const std::vector<double>* densities = nullptr, const NodeFaces* faces = nullptr);
 
   Eigen::Index count() const { return positions_->rows(); }
 
@@ -41,7 +39,10 @@ class PlacedNodes {
   /// The same for any nodes.
   Batch batch(std::span<const int> nodes) const;
 
-  /// The force on a node [length b/uv^4]. Requires: force.force_radius > 0.
+  /// The normal of a node, world; of length 1 or 0. Requires: there are faces.
+  Vector3d normal(int node) const { return normal_at(*faces_, *positions_, to_normals_, node); }
+
+  /// The force on a node [length b/uv^4]. Requires: force.force_radius > 0; faces if it uses them.
   Vector3d load_on(int node, const SampledForce& force) const;
 
   /// Adds `load_on` of `count` nodes from node `first` on to `sums`, from index `place` on.
@@ -57,6 +58,8 @@ class PlacedNodes {
   const Field* positions_;
   std::optional<Transform> transform_;
   const std::vector<double>* densities_ = nullptr;
+  const NodeFaces* faces_ = nullptr;
+  Matrix3d to_normals_ = Matrix3d::Identity();  // of vector areas
 };
 
 }  // namespace pliant

@@ -50,6 +50,13 @@ std::size_t bytes_to_bind(std::size_t vertex_count, const TriangleSurface* surfa
          (surface ? 0 : bytes_as_surface(mesh));
 }
 
+std::size_t bytes_of_faces(const Mesh& mesh) {
+  // A corner: its node, and its face at its node; a face and a vertex: where theirs begin.
+  return (2 * mesh.corner_vertices.size() + mesh.face_sizes.size() +
+          static_cast<std::size_t>(mesh.vertex_count())) *
+         sizeof(int);
+}
+
 std::size_t bytes_as_surface(const Mesh& mesh) {
   // A corner: its node, edge and origin, twice while edges are numbered, its face at its node, and,
   // as a triangle of a face, what is laid flat, and two cells of a region with their points,

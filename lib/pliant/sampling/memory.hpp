@@ -29,6 +29,9 @@ std::size_t bytes_to_run(std::size_t vertex_count);
 /// bound. [bytes]
 std::size_t bytes_as_surface(const Mesh& mesh);
 
+/// The faces of the nodes of a grid. [bytes]
+std::size_t bytes_of_faces(const Mesh& mesh);
+
 /// The memory for binding vertices to a driver, and for moving them. `surface`: the driver's
 /// triangles; null: they are made of `mesh`. An upper bound. [bytes]
 std::size_t bytes_to_bind(std::size_t vertex_count, const TriangleSurface* surface,

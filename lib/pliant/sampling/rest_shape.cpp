@@ -323,22 +323,13 @@ class ShapeMaker {
   MemoryShare memory_;
 };
 
-// The triangles that a driven surface follows.
-Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surface,
-                                                            const RestShape& shape,
-                                                            const StopRequest& should_stop) {
-  if (shape.surface) return shape.surface;
-  if (shape.cage) return shape.cage;
+// The mesh whose vertices move as nodes, of a net its control points, and the node of each.
+std::pair<Mesh, std::vector<int>> mesh_of_nodes(const Surface& surface, const RestShape& shape) {
   const auto* const net = std::get_if<NurbsNet>(&surface.shape);
-  std::vector<int> nodes = shape.vertex_nodes;
-  if (net) {
-    nodes.resize(static_cast<std::size_t>(shape.rest.rows()));
-    std::iota(nodes.begin(), nodes.end(), 0);
-  }
-  auto made = surface_of_nodes(net ? control_mesh(*net) : shape.mesh, std::move(nodes), shape.rest,
-                               should_stop);
-  if (!made) return fail(made.error());
-  return std::make_shared<const TriangleSurface>(*std::move(made));
+  if (!net) return {shape.mesh, shape.vertex_nodes};
+  std::vector<int> nodes(static_cast<std::size_t>(shape.rest.rows()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  return {control_mesh(*net), std::move(nodes)};
 }
 
 }  // namespace
@@ -402,7 +393,7 @@ Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettin
                                           std::move(context), shape.factors);
   }
   return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
-                                    shape.factors);
+                                    shape.factors, shape.faces);
 }
 
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
@@ -413,6 +404,34 @@ Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin&
 Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context) {
   return ShapeMaker(surface, origin, context).check();
+}
+
+Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surface,
+                                                            const RestShape& shape,
+                                                            const StopRequest& should_stop) {
+  if (shape.surface) return shape.surface;
+  if (shape.cage) return shape.cage;
+  auto [mesh, nodes] = mesh_of_nodes(surface, shape);
+  auto made = surface_of_nodes(mesh, std::move(nodes), shape.rest, should_stop);
+  if (!made) return fail(made.error());
+  return std::make_shared<const TriangleSurface>(*std::move(made));
+}
+
+Result<void> find_faces(ReservedShape& made, const Surface& surface, const Scene& scene,
+                        const StopRequest& should_stop) {
+  RestShape& shape = made.shape;
+  if (shape.surface) return {};
+  if (shape.cage) {
+    shape.faces = shape.cage;
+    return {};
+  }
+  const auto [mesh, nodes] = mesh_of_nodes(surface, shape);
+  const std::size_t bytes = made.memory.bytes() + bytes_of_faces(mesh);
+  if (auto taken = take(bytes, surface.name, scene.origin, made.memory); !taken) return taken;
+  auto faces = node_faces(mesh, nodes, static_cast<int>(shape.rest.rows()), should_stop);
+  if (!faces) return fail(faces.error());
+  shape.faces = std::make_shared<const NodeFaces>(*std::move(faces));
+  return {};
 }
 
 Result<void> bind_to_driver(ReservedShape& driven, const Surface& own, const RestShape& driver,

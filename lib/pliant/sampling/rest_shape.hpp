@@ -21,7 +21,9 @@ namespace pliant {
 class AnimatedShape;
 class Binding;
 class Body;
+class Carriers;
 struct NodeFactors;
+struct NodeFaces;
 struct TriangleSurface;
 struct VertexWeights;
 
@@ -37,6 +39,12 @@ struct RestShape {
   std::optional<Grid> grid = {};
   std::shared_ptr<const TriangleSurface> surface = {};  ///< null: a grid
   std::string note = {};  ///< a remark for the author on how the mesh was read; may be empty
+
+  /// The faces of the nodes of a grid; null: no force uses their normals, or it is a surface.
+  std::shared_ptr<const NodeFaces> faces = {};
+
+  /// How what follows a surface is carried; null: nothing does. The same for all of a scene.
+  std::shared_ptr<const Carriers> carriers = {};
 
   /// The factors of the material's maps at the nodes; null: there is no map.
   std::shared_ptr<const NodeFactors> factors = {};
@@ -116,6 +124,17 @@ struct ReservedShape {
 /// Interrupted.
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context = {});
+
+/// The triangles of a surface's nodes, be they a grid: those that a driven surface follows. Errors:
+/// those of `surface_of_nodes`.
+Result<std::shared_ptr<const TriangleSurface>> triangles_of(const Surface& surface,
+                                                            const RestShape& shape,
+                                                            const StopRequest& should_stop = {});
+
+/// Finds the faces of a grid's nodes, for forces along their normals, and reserves the memory for
+/// them. Errors: OutOfMemory; Interrupted.
+Result<void> find_faces(ReservedShape& made, const Surface& surface, const Scene& scene,
+                        const StopRequest& should_stop = {});
 
 /// Binds a driven surface to its driver, as both are placed at the scene's start, and reserves the
 /// memory for it. Errors: the driver's triangles have no area; OutOfMemory; Interrupted.

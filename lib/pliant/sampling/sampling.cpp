@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/format/description.hpp"
 
 namespace pliant {
@@ -13,15 +14,59 @@ namespace {
 
 Vector3d to_vector(const Value<3>& value) { return {value[0], value[1], value[2]}; }
 
-// The value of a channel at a frame.
-void sample(const Channel<1>& channel, int frame, double& value) { value = channel.at(frame)[0]; }
-template <class Vector>
-void sample(const Vector& channel, int frame, Vector3d& value) {
-  value = to_vector(channel.at(frame));
-}
-void sample(const std::optional<Channel<3>>& channel, int frame, std::optional<Vector3d>& value) {
-  if (channel) value = to_vector(channel->at(frame));
-}
+// What carries the places and directions of a force or group. SPEC 7.
+class Followed {
+ public:
+  template <class Follower>
+  Followed(const Scene& scene, const Follower& follower, int frame, ForceFaults& faults,
+           const Carriers& carriers)
+      : scene_(scene),
+        name_(follower.name),
+        surface_(follower.follow),
+        frame_(frame),
+        faults_(faults),
+        carriers_(carriers) {}
+
+  // The place in the world. Directions turn with the first place that is asked for.
+  Vector3d place(const PositionChannel& channel) {
+    const Vector3d place = to_vector(channel.at(frame_));
+    if (surface_.empty()) return place;
+    auto carried = carriers_.carry(scene_, surface_, place, frame_);
+    if (!carried) {
+      faults_.add(fmt::format("{} follows {}: {}", name_, surface_, carried.error().message));
+      return place;
+    }
+    if (!first_) first_ = *carried;
+    return carried->place;
+  }
+
+  Vector3d direction(const Channel<3>& channel) const {
+    const Vector3d direction = to_vector(channel.at(frame_));
+    if (!first_) return direction;
+    return to_world({first_->directions, Vector3d::Zero()}, direction);
+  }
+
+  std::optional<Matrix3d> rotation() const {
+    return first_ ? std::optional(first_->rotation) : std::nullopt;
+  }
+
+  // The value of a channel of any type.
+  void sample(const Channel<1>& channel, double& value) { value = channel.at(frame_)[0]; }
+  void sample(const PositionChannel& channel, Vector3d& value) { value = place(channel); }
+  void sample(const Channel<3>& channel, Vector3d& value) { value = direction(channel); }
+  void sample(const std::optional<Channel<3>>& channel, std::optional<Vector3d>& value) {
+    if (channel) value = direction(*channel);
+  }
+
+ private:
+  const Scene& scene_;
+  const std::string& name_;
+  const std::string& surface_;
+  int frame_;
+  ForceFaults& faults_;
+  const Carriers& carriers_;
+  std::optional<Carried> first_;
+};
 
 // A tangent of one number applies to all of x, y, z. SPEC 3.
 Vector3d sample_tangent(const TangentChannel& channel, int frame) {
@@ -101,6 +146,7 @@ struct SampleShape {
   const std::shared_ptr<ForceFaults>& faults;
   NoiseClock* clock;  // null: the sum is computed here
   const ShapeFrames& shape;
+  Followed& followed;
 
   double seconds() const { return frame / scene.fps; }
 
@@ -117,14 +163,15 @@ struct SampleShape {
   ForceKind operator()(const Kind& kind) const {
     typename Description<Kind>::Sampled sampled;
     const auto row = [this](const Attribute&, const auto& channel, auto& value) {
-      sample(channel, frame, value);
+      followed.sample(channel, value);
     };
     describe(row, kind, sampled);
     return sampled;
   }
   ForceKind operator()(const NoiseChannels& noise) const {
-    return NoiseForce{to_vector(noise.center.at(frame)), noise.frequency.at(frame)[0],
-                      noise_cells(noise.rate), noise.seed.value_or(scene.seed)};
+    const Vector3d center = followed.place(noise.center);
+    return NoiseForce{center, noise.frequency.at(frame)[0], noise_cells(noise.rate),
+                      noise.seed.value_or(scene.seed), followed.rotation()};
   }
   ForceKind operator()(const InertiaChannels&) const {
     return sample_inertia(surface, scene.fps, frame, shape);
@@ -162,12 +209,15 @@ std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
 }
 
 SceneSampling::SceneSampling(const Scene& scene)
-    : targets_(targets_of(scene)), animations_(scene.surfaces.size()) {
+    : targets_(targets_of(scene)),
+      animations_(scene.surfaces.size()),
+      carriers_(std::make_shared<const Carriers>(scene)) {
   for (const Force& force : scene.forces) clocks_.push_back(clock_of(force, scene.start));
 }
 
-void SceneSampling::animate(std::size_t surface, std::shared_ptr<const AnimatedShape> animation) {
-  animations_[surface] = std::move(animation);
+void SceneSampling::tell(std::size_t surface, const RestShape& shape) {
+  animations_[surface] = shape.animation;
+  if (shape.carriers) carriers_ = shape.carriers;
 }
 
 ShapeFrames sample_shape(const AnimatedShape* animation, int frame, ForceFaults& faults) {
@@ -179,20 +229,59 @@ ShapeFrames sample_shape(const AnimatedShape* animation, int frame, ForceFaults&
 }
 
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock,
-                          const ShapeFrames& shape) {
-  const SampleShape sample{scene, force, surface, frame, faults, clock, shape};
+                          const std::shared_ptr<ForceFaults>& faults, const Carriers& carriers,
+                          NoiseClock* clock, const ShapeFrames& shape) {
+  Followed followed(scene, force, frame, *faults, carriers);
+  const SampleShape sample{scene, force, surface, frame, faults, clock, shape, followed};
   const bool selects = force.group.empty() && surface.solver.region == SolvedRegion::Forces;
   return {.kind = std::visit(sample, force.kind),
           .magnitude = force.magnitude.at(frame)[0],
           .deformation_radius = selects ? force.deformation_radius.at(frame)[0] : 0,
           .force_radius = force.force_radius.at(frame)[0],
           .falloff = force.falloff,
-          .falloff_curve = force.falloff_curve ? &*force.falloff_curve : nullptr};
+          .falloff_curve = force.falloff_curve ? &*force.falloff_curve : nullptr,
+          .is_along_normal = force.along == PushAlong::Normal};
 }
 
-SampledForce sample_group(const Group& group, int frame) {
-  return region_sphere(to_vector(group.center.at(frame)), group.deformation_radius.at(frame)[0]);
+SampledForce sample_group(const Scene& scene, const Group& group, int frame, ForceFaults& faults,
+                          const Carriers& carriers) {
+  Followed followed(scene, group, frame, faults, carriers);
+  return region_sphere(followed.place(group.center), group.deformation_radius.at(frame)[0]);
+}
+
+Force in_world(const Scene& scene, const Force& force, int frame, const Carriers& carriers) {
+  if (force.follow.empty()) return force;
+  ForceFaults faults;
+  Followed followed(scene, force, frame, faults, carriers);
+  Force placed = force;
+  const auto place = [&]<class Channel>(const Attribute&, Channel& channel) {
+    if constexpr (std::is_same_v<Channel, PositionChannel> ||
+                  std::is_same_v<Channel, pliant::Channel<3>>) {
+      Vector3d value;
+      followed.sample(channel, value);
+      channel = Value<3>{value.x(), value.y(), value.z()};
+    }
+  };
+  const auto row = [&](const Attribute& attribute, auto& channel) {
+    if constexpr (requires { channel.has_value(); }) {
+      if (channel) place(attribute, *channel);
+    } else {
+      place(attribute, channel);
+    }
+  };
+  std::visit([&](auto& kind) { describe(row, kind); }, placed.kind);
+  placed.follow.clear();
+  return placed;
+}
+
+Group in_world(const Scene& scene, const Group& group, int frame, const Carriers& carriers) {
+  if (group.follow.empty()) return group;
+  ForceFaults faults;
+  const Vector3d center = Followed(scene, group, frame, faults, carriers).place(group.center);
+  Group placed = group;
+  placed.center = Value<3>{center.x(), center.y(), center.z()};
+  placed.follow.clear();
+  return placed;
 }
 
 const Group* group_of(const Scene& scene, const Force& force) {
@@ -301,7 +390,7 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
     const Group* const group = place >= 0 ? &scene.groups[targets.groups[place]] : nullptr;
     if (!is_enabled(force, group, frame)) continue;
     forces.push_back(sample_force(scene, force, scene.surfaces[surface], frame, inputs.faults,
-                                  sampling.clock(index), shape));
+                                  sampling.carriers(), sampling.clock(index), shape));
     const auto* const custom = std::get_if<CustomForce>(&force.kind);
     inputs.sources.push_back({force.name, kind_of(force), force.targets, !group && !is_whole,
                               custom ? std::string_view(custom->key) : std::string_view()});
@@ -318,7 +407,7 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
     if (!group.enabled.at(frame)) continue;
     group_selectors[place] = static_cast<int>(forces.size());
     selectors.push_back(static_cast<int>(forces.size()));
-    forces.push_back(sample_group(group, frame));
+    forces.push_back(sample_group(scene, group, frame, *inputs.faults, sampling.carriers()));
     inputs.sources.push_back({group.name, "group", group.targets, true});
   }
   for (std::size_t k = 0; k < member_count; ++k) {

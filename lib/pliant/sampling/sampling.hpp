@@ -9,6 +9,7 @@
 
 #include "pliant/body/body.hpp"
 #include "pliant/sampling/animated_shape.hpp"
+#include "pliant/sampling/carriers.hpp"
 #include "pliant/sampling/noise_clock.hpp"
 #include "pliant/sampling/targets.hpp"
 #include "pliant/scene/scene.hpp"
@@ -18,7 +19,8 @@ namespace pliant {
 // From channels to the values of one frame; not for programs.
 
 /// Invalid results of custom forces: a negative or NaN distance, a force that is not finite. They
-/// are replaced by "out of reach" and 0; likewise a cache that cannot be read. The caller that
+/// are replaced by "out of reach" and 0; likewise a cache that cannot be read, and a triangle that
+/// carries a force and has no area. The caller that
 /// sampled the inputs must end the run.
 class ForceFaults {
  public:
@@ -64,8 +66,10 @@ class SceneSampling {
 
   const SurfaceTargets& targets(std::size_t surface) const { return targets_[surface]; }
 
-  /// Gives a surface the animation of its rest shape, before anything of it is sampled.
-  void animate(std::size_t surface, std::shared_ptr<const AnimatedShape> animation);
+  /// Tells of a surface's rest shape and how it moves, before anything of the scene is sampled.
+  void tell(std::size_t surface, const RestShape& shape);
+
+  const Carriers& carriers() const { return *carriers_; }
 
   /// The animation of a surface's rest shape; null: it stays the same.
   const AnimatedShape* animation(std::size_t surface) const { return animations_[surface].get(); }
@@ -77,6 +81,7 @@ class SceneSampling {
   std::vector<SurfaceTargets> targets_;
   std::vector<std::unique_ptr<NoiseClock>> clocks_;               // one per force
   std::vector<std::shared_ptr<const AnimatedShape>> animations_;  // one per surface
+  std::shared_ptr<const Carriers> carriers_;
 };
 
 /// The choices of a surface's body; `is_grid`: whether its nodes form a grid.
@@ -100,11 +105,18 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
 /// forces are added to `faults`. `clock` is that of the force; null: the time of a noise with a
 /// keyed rate is summed again from the start. `shape` is that of `sample_shape`.
 SampledForce sample_force(const Scene& scene, const Force& force, const Surface& surface, int frame,
-                          const std::shared_ptr<ForceFaults>& faults, NoiseClock* clock = nullptr,
-                          const ShapeFrames& shape = {});
+                          const std::shared_ptr<ForceFaults>& faults, const Carriers& carriers,
+                          NoiseClock* clock = nullptr, const ShapeFrames& shape = {});
 
-/// The region of a group.
-SampledForce sample_group(const Group& group, int frame);
+/// The region of a group. An error of what carries it is added to `faults`.
+SampledForce sample_group(const Scene& scene, const Group& group, int frame, ForceFaults& faults,
+                          const Carriers& carriers);
+
+/// A force or group as it is in the world at a frame: one that follows nothing, with the places and
+/// directions that it has there; itself if it follows nothing. Where nothing can carry it, it stays
+/// as it is.
+Force in_world(const Scene& scene, const Force& force, int frame, const Carriers& carriers);
+Group in_world(const Scene& scene, const Group& group, int frame, const Carriers& carriers);
 
 /// The first frame of a run, at which all surfaces are at rest: the scene's start, unless a surface
 /// is solved ahead of it or begins a cycle at it, which it enters from the frame before.

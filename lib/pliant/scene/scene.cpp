@@ -16,12 +16,23 @@ const ScenePart* find_part(const std::vector<ScenePart>& parts, std::string_view
 
 }  // namespace
 
+namespace {
+
+Vector3d vector_at(const Channel<3>& channel, double frame) {
+  const Value<3> value = channel.at(frame);
+  return {value[0], value[1], value[2]};
+}
+
+}  // namespace
+
 Transform TransformChannels::at(double frame) const {
-  const auto vector = [frame](const Channel<3>& channel) {
-    const Value<3> value = channel.at(frame);
-    return Vector3d(value[0], value[1], value[2]);
-  };
-  return make_transform(vector(translate), vector(rotate), vector(scale), rotate_order);
+  return make_transform(vector_at(translate, frame), vector_at(rotate, frame),
+                        vector_at(scale, frame), rotate_order);
+}
+
+Matrix3d TransformChannels::rotation_at(double frame) const {
+  return make_transform(Vector3d::Zero(), vector_at(rotate, frame), Vector3d::Ones(), rotate_order)
+      .linear;
 }
 
 bool operator==(const Scene& a, const Scene& b) {

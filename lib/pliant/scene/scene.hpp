@@ -60,6 +60,7 @@ struct TransformChannels {
   RotateOrder rotate_order = RotateOrder::Xyz;
 
   Transform at(double frame) const;
+  Matrix3d rotation_at(double frame) const;  ///< R alone
 
   friend bool operator==(const TransformChannels&, const TransformChannels&) = default;
 };
@@ -190,6 +191,13 @@ struct UniformChannels {
   friend bool operator==(const UniformChannels&, const UniformChannels&) = default;
 };
 
+/// Pushes along the normals of the surface: inflates it; a negative magnitude sucks it in.
+struct PressureChannels {
+  PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
+
+  friend bool operator==(const PressureChannels&, const PressureChannels&) = default;
+};
+
 /// Turns about a line by the right-hand rule, and pulls towards it.
 struct VortexChannels {
   PositionChannel center = Value<3>{0, 0, 0};  ///< a point of the line, world [length]
@@ -244,13 +252,20 @@ struct CustomForce {
   }
 };
 
+/// What of a force pushes a node: all of it, or its part along the node's normal.
+enum class PushAlong { Free, Normal };
+
 /// One force of a scene.
 struct Force {
-  std::string name;                   ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
-  Switch enabled = true;              ///< a disabled force selects no nodes
-  std::vector<std::string> targets;   ///< names of surfaces; empty: all
-  std::string group = {};             ///< name of its group; empty: none. In a group, the group
-                                      ///< selects the region and `deformation_radius` is not used
+  std::string name;                  ///< [A-Za-z_][A-Za-z0-9_-]*, unique in the scene
+  Switch enabled = true;             ///< a disabled force selects no nodes
+  std::vector<std::string> targets;  ///< names of surfaces; empty: all
+  std::string group = {};            ///< name of its group; empty: none. In a group, the group
+                                     ///< selects the region and `deformation_radius` is not used
+  /// The surface in whose object space its places and directions are; empty: the world. Of a kind
+  /// with a place.
+  std::string follow = {};
+  PushAlong along = PushAlong::Free;  ///< of a kind with directions
   Channel<1> magnitude = 0;           ///< [length b/uv^4]
   Channel<1> deformation_radius = 1;  ///< selects the region, world [length], >= 0
   Channel<1> force_radius = 1;        ///< selects the nodes that are pushed, world [length], >= 0
@@ -258,7 +273,7 @@ struct Force {
   /// A curve over s = distance / force radius, from 0 to 1, used instead of `falloff`.
   std::optional<Curve<1>> falloff_curve = {};
   std::variant<PointChannels, RadialChannels, LineChannels, UniformChannels, VortexChannels,
-               NoiseChannels, InertiaChannels, CustomForce>
+               NoiseChannels, InertiaChannels, PressureChannels, CustomForce>
       kind = {};  ///< by default `PointChannels`
 
   friend bool operator==(const Force&, const Force&) = default;
@@ -274,6 +289,7 @@ struct Group {
                                                ///< name
   Switch enabled = true;                       ///< a disabled group silences its forces
   std::vector<std::string> targets = {};       ///< names of surfaces; empty: all
+  std::string follow = {};                     ///< as of a force
   PositionChannel center = Value<3>{0, 0, 0};  ///< world [length]
   Channel<1> deformation_radius = 1;           ///< selects the region, world [length], >= 0
 

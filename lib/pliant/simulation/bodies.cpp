@@ -123,9 +123,11 @@ Result<void> Bodies::make_all() {
   if (context_.is_stopped()) return interrupted_at_start();
   if (errors.empty()) {
     find_drivers();
-    if (auto bound = bind_driven(shapes); !bound) {
-      if (bound.error().code == ErrorCode::Interrupted) return interrupted_at_start();
-      errors.push_back(bound.error());
+    auto joined = bind_driven(shapes);
+    if (joined) joined = join_forces(shapes);
+    if (!joined) {
+      if (joined.error().code == ErrorCode::Interrupted) return interrupted_at_start();
+      errors.push_back(joined.error());
     }
   }
   if (!errors.empty()) return fail(as_one(std::move(errors), scene_.origin.file));
@@ -157,13 +159,35 @@ Result<void> Bodies::bind_driven(std::span<ReservedShape> made) const {
   return {};
 }
 
+// Finds what forces need of the shapes: the faces of those that are pushed along their normals, and
+// the surfaces that are followed.
+Result<void> Bodies::join_forces(std::span<ReservedShape> made) const {
+  for (std::size_t k = 0; k < made.size(); ++k) {
+    const auto& members = sampling_.targets(k).forces;
+    const bool use_normals = std::ranges::any_of(members, [&](const auto& member) {
+      const Force& force = scene_.forces[member.force];
+      return force.along == PushAlong::Normal ||
+             std::holds_alternative<PressureChannels>(force.kind);
+    });
+    if (!use_normals) continue;
+    auto found = find_faces(made[k], scene_.surfaces[k], scene_, context_.should_stop);
+    if (!found) return found;
+  }
+  std::vector<std::reference_wrapper<const RestShape>> shapes;
+  for (const ReservedShape& one : made) shapes.emplace_back(one.shape);
+  const auto carriers = Carriers::make(scene_, shapes, context_.should_stop);
+  if (!carriers) return fail(carriers.error());
+  for (ReservedShape& one : made) one.shape.carriers = *carriers;
+  return {};
+}
+
 // Errors: Interrupted.
 Result<void> Bodies::add(const Surface& surface, ReservedShape made) {
   RunContext context = context_;
   context.profile = profile_of(bodies_.size());
   BodySettings settings = body_settings(surface, made.shape.grid.has_value());
   settings.exact_parts = exact_parts_;
-  sampling_.animate(bodies_.size(), made.shape.animation);
+  sampling_.tell(bodies_.size(), made.shape);
   auto body = make_body(made.shape, settings, solver_, std::move(context));
   if (!body) return fail(body.error());
   bodies_.push_back(*std::move(body));

@@ -87,6 +87,7 @@ class Bodies {
   Result<void> add(const Surface& surface, ReservedShape made);
   void for_each_body(const std::function<void(std::size_t)>& visit);
   void find_drivers();
+  Result<void> join_forces(std::span<ReservedShape> made) const;
   Result<void> bind_driven(std::span<ReservedShape> made) const;
   Result<void> show(std::size_t index, int frame, SurfaceFrame& shown) const;
   Result<Field> driven_positions(std::size_t index, int frame, const Transform& transform,

@@ -34,6 +34,7 @@ class Simulation::Player {
 
   const Scene& scene() const { return scene_; }
   const Bodies& bodies() const { return bodies_; }
+  const SceneSampling& sampling() const { return sampling_; }
   std::vector<Warning> warnings() const;
   FrameCounts frame_counts() const { return frame_counts_; }
 

@@ -123,6 +123,14 @@ std::span<const RestShape> Simulation::rest_shapes() const {
   return player_->bodies().rest_shapes();
 }
 
+Force Simulation::in_world(const Force& force, int frame) const {
+  return pliant::in_world(scene(), force, frame, player_->sampling().carriers());
+}
+
+Group Simulation::in_world(const Group& group, int frame) const {
+  return pliant::in_world(scene(), group, frame, player_->sampling().carriers());
+}
+
 std::vector<Warning> Simulation::warnings() const { return player_->warnings(); }
 
 std::size_t Simulation::surface_memory() const { return player_->bodies().surface_memory(); }

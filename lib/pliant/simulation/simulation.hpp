@@ -149,6 +149,11 @@ class Simulation {
   /// The surfaces at rest, in the order of the scene.
   std::span<const RestShape> rest_shapes() const;
 
+  /// A force or group of the scene as it is in the world at a frame, with constant places and
+  /// directions; itself if it follows nothing.
+  Force in_world(const Force& force, int frame) const;
+  Group in_world(const Group& group, int frame) const;
+
   /// The warnings of the frames computed or read so far, each cause once with its frames. A warning
   /// about something that never happens, such as a force that selects nothing, says that it is
   /// about these frames if they are not all.

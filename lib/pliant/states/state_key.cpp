@@ -83,10 +83,13 @@ class HashedValues {
     const auto& [columns, rows, hu, hv, is_closed_u, is_closed_v] = grid;
     add_all(columns, rows, hu, hv, int{is_closed_u}, int{is_closed_v});
   }
+  void add(const NodeFaces& faces) {
+    add_bytes(faces.face_starts);
+    add_bytes(faces.corner_nodes);
+  }
   // What of a surface the states depend on, besides the rest positions: all else follows from it.
   void add(const TriangleSurface& surface) {
-    add_bytes(surface.face_starts);
-    add_bytes(surface.corner_nodes);
+    add(static_cast<const NodeFaces&>(surface));
     add_bytes(surface.triangles);
     add(surface.unit);
   }
@@ -141,11 +144,11 @@ class HashedValues {
   }
 
   void add(const SampledForce& force) {
-    const auto& [shape, magnitude, deformation_radius, force_radius, falloff, falloff_curve] =
-        force;
+    const auto& [shape, magnitude, deformation_radius, force_radius, falloff, falloff_curve,
+                 is_along_normal] = force;
     add(std::uint64_t{shape.index()});
     std::visit([this](const auto& of_kind) { add(of_kind); }, shape);
-    add_all(magnitude, deformation_radius, force_radius, falloff);
+    add_all(magnitude, deformation_radius, force_radius, falloff, int{is_along_normal});
     add(int{falloff_curve != nullptr});
     if (falloff_curve) add(falloff_curve->keys());
   }
@@ -181,6 +184,8 @@ Hash rest_key(const RestShape& shape, const BodySettings& settings, SolverChoice
   if (shape.grid) values.add(*shape.grid);
   values.add(hash_of(shape.rest));
   if (shape.surface) values.add(*shape.surface);
+  values.add(int{shape.faces != nullptr});
+  if (shape.faces) values.add(*shape.faces);
   values.add(int{shape.factors != nullptr});
   if (shape.factors) values.add(*shape.factors);
   values.add(settings);

@@ -14,7 +14,8 @@ TEST_CASE("a word that the format does not know is told with the nearest and all
       {scene_with("<radial name=\"r\" falof=\"smooth\"/>"),
        2,
        {"<radial> has no attribute \"falof\"; did you mean \"falloff\"? allowed: name, enabled, "
-        "targets, magnitude, deformationRadius, forceRadius, falloff, center"}},
+        "targets, magnitude, deformationRadius, forceRadius, falloff, follow, "
+        "center"}},
       {scene_with("<radial name=\"r\"\n\n direction=\"0 1 0\"/>"),
        4,
        {"<radial> has no attribute \"direction\"; allowed: "}},

@@ -69,7 +69,7 @@ TEST_CASE("a falloff is a curve over s", "[scene][falloff]") {
 
 TEST_CASE("every kind of force takes a falloff", "[scene][falloff]") {
   const std::string kind =
-      GENERATE("point", "radial", "line", "uniform", "vortex", "noise", "inertia");
+      GENERATE("point", "radial", "line", "uniform", "vortex", "noise", "inertia", "pressure");
   const Scene scene = scene_of(scene_with(
       "<" + kind + " name=\"f\"><falloff><key at=\"0\" value=\"2\"/></falloff></" + kind + ">"));
   CHECK(scene.forces.at(0).falloff_curve);
@@ -147,7 +147,7 @@ TEST_CASE("what is wrong in a group is told", "[scene][group]") {
        {"the name is already used at line 2"}},
       {scene_with("<group name=\"g\" forceRadius=\"1\"/>"),
        2,
-       {"<group> has no attribute \"forceRadius\"", "name, enabled, targets, center"}},
+       {"<group> has no attribute \"forceRadius\"", "name, enabled, targets, follow, center"}},
       {scene_with("<group name=\"g\" deformationRadius=\"-1\"/>"), 2, {"must be at least 0"}},
       {scene_with("<group/>"), 2, {"<group> needs the attribute \"name\""}},
       {sheets("<group name=\"g\" targets=\"bb\"/>"),

@@ -136,8 +136,8 @@ TEST_CASE("the page has one row for each attribute, as the reader knows it", "[s
 
 /// Whether the element is a direct child of a scene with a name: a force or a group.
 bool is_force(const std::string& element) {
-  const std::set<std::string> forces = {"point",  "radial", "line",    "uniform",
-                                        "vortex", "noise",  "inertia", "group"};
+  const std::set<std::string> forces = {"point", "radial",  "line",     "uniform", "vortex",
+                                        "noise", "inertia", "pressure", "group"};
   return forces.contains(element);
 }
 

@@ -234,8 +234,8 @@ TEST_CASE("a problem is told in its file, with the chain of includes", "[scene][
       shot.problems() ==
       Lines{
           "shot.xml:3: <point> has no attribute \"magnitde\"; did you mean \"magnitude\"? allowed: "
-          "name, enabled, targets, magnitude, deformationRadius, forceRadius, falloff, center, "
-          "direction",
+          "name, enabled, targets, magnitude, deformationRadius, forceRadius, falloff, follow, "
+          "along, center, direction",
           "force.xml:3: <point> center=\"1 2\": three numbers are required, not 2 (separated by "
           "spaces); included by rig.xml:3, by shot.xml:2",
           "rig.xml:4: <radial> name=\"sheet\": the name is already used at line 2; surfaces, "
@@ -506,7 +506,7 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
       {"<surface name=\"s\"><grid columns=\"3\" rows=\"3\"><include "
        "file=\"good.xml\"/></grid></surface>",
        {"shot.xml:2: <grid> has no element \"include\"; it belongs in scene, surface, material, "
-        "point, radial, line, uniform, vortex, noise, inertia, group"}},
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group"}},
       {"<include file=\"text.xml\"/>",
        {"text.xml:1: malformed XML: there is text before the root element; a file that is included "
         "must "
@@ -528,14 +528,15 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
         "fragment, "
         "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, "
         "solver, "
-        "point, radial, line, uniform, vortex, noise, inertia, group, path, falloff, animate" +
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, path, falloff, "
+        "animate" +
         in_shot}},
       {"<include file=\"named.xml\"/>",
        {"named.xml:1: <fragment> has no attribute \"name\"; allowed: none" + in_shot}},
       {"<inclde file=\"a\"/>",
        {"shot.xml:2: <scene> has no element \"inclde\"; did you mean \"include\"? allowed: "
         "surface, "
-        "point, radial, line, uniform, vortex, noise, inertia, group, include, define"}},
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, include, define"}},
   };
   for (const Row& row : rows) {
     CAPTURE(row.body);
@@ -702,7 +703,7 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
   CHECK(
       shot.problems() ==
       Lines{"a.xml:2: <scene> has no element \"nonsense\"; allowed: surface, point, radial, line, "
-            "uniform, vortex, noise, inertia, group; included by shot.xml:2",
+            "uniform, vortex, noise, inertia, pressure, group; included by shot.xml:2",
             "a.xml:3: <uniform> name=\"$x\": no definition of \"x\" comes before it; "
             "included by shot.xml:2"});
   shot.fragment("a.xml", "<nonsense/>");

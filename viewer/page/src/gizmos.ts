@@ -8,6 +8,7 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { at, between, vectorBetween, type Force, type Track, type Vector } from "./bake";
 import type { Label } from "./labels";
 import { Segments, SegmentsGeometry } from "./segments";
+import type { Foot } from "./surface_view";
 import type { Palette } from "./theme";
 
 const segments = 64;
@@ -134,6 +135,9 @@ class Arrow {
   }
 }
 
+/** Where arrows along the normals stand, up to `count`, on the surfaces that a force targets. */
+export type FeetIn = (force: Force, center: THREE.Vector3, radius: number, count: number) => Foot[];
+
 /** One force, or a group. */
 class Gizmo {
   readonly group = new THREE.Group();
@@ -175,7 +179,7 @@ class Gizmo {
     this.middle = new THREE.Mesh(dot, this.solid);
     this.middle.name = `${parameters.name} center`;
     this.course = this.inks.faint.line(segment);
-    const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1 };
+    const arrowCount: Record<string, number> = { point: 1, line: 4, radial: 6, uniform: 1, vortex: 4, inertia: 1, pressure: 14 };
     for (let k = 0; k < (arrowCount[kind] ?? 0); ++k) {
       this.arrows.push(new Arrow(this.inks.arrow, this.solid));
       this.arrows[k].group.name = `${parameters.name} vector`;
@@ -203,8 +207,8 @@ class Gizmo {
     return { text: name, place: this.middle.position.clone(), rank, isFaint, isGroup };
   }
 
-  /** `middle`: the position for forces that act everywhere; `push`: the inertial force there. */
-  show(index: number, share: number, isShown: boolean, middle: THREE.Vector3, push: Vector | undefined): void {
+  /** `middle`: the position for forces that act everywhere; `push`: the inertial force there; `feetIn`: of surfaces that it targets. */
+  show(index: number, share: number, isShown: boolean, middle: THREE.Vector3, push: Vector | undefined, feetIn: FeetIn): void {
     const force = this.parameters;
     this.group.visible = isShown && at(force.enabled, index);
     if (!this.group.visible) return;
@@ -237,6 +241,13 @@ class Gizmo {
     } else if (force.kind === "radial") {
       const ways: Vector[] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
       this.burst(center, ways.map(toVector), 0.25 * size, 0.62 * length, 0.7 * headSize);
+    } else if (force.kind === "pressure") {
+      const feet = feetIn(force, center, forceRadius, this.arrows.length);
+      this.arrows.forEach((arrow, k) => {
+        const along = k < feet.length ? feet[k].normal.multiplyScalar(0.4 * length) : new THREE.Vector3();
+        // Of one that sucks in, the tip is on the surface.
+        arrow.point(k < feet.length && length < 0 ? feet[k].place.sub(along) : feet[k]?.place ?? center, along, 0.5 * headSize);
+      });
     } else if (force.kind === "line") {
       const [side, over] = across(ends[1].clone().sub(ends[0]));
       this.burst(center, [side, side.clone().negate(), over, over.clone().negate()], 0.25 * size, 0.62 * length, 0.7 * headSize);
@@ -331,8 +342,8 @@ export class Gizmos {
     for (const gizmo of this.gizmos) this.group.add(gizmo.group);
   }
 
-  show(index: number, share: number, isShown: boolean[], pushes: Map<number, Vector>): void {
-    this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, isShown[k], this.middle, pushes.get(k)));
+  show(index: number, share: number, isShown: boolean[], pushes: Map<number, Vector>, feetIn: FeetIn): void {
+    this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, isShown[k], this.middle, pushes.get(k), feetIn));
   }
 
   /** The labels of the forces that are shown. */

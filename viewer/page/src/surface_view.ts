@@ -29,6 +29,12 @@ function placement(surface: BakedSurface, index: number, share: number): THREE.M
   return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
 }
 
+/** Where an arrow along a normal stands. */
+export interface Foot {
+  place: THREE.Vector3;
+  normal: THREE.Vector3;
+}
+
 export class SurfaceView {
   readonly group = new THREE.Group();
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshStandardMaterial>;
@@ -142,6 +148,22 @@ export class SurfaceView {
   /** A vertex at the frame shown, world space. */
   vertex(index: number, out = new THREE.Vector3()): THREE.Vector3 {
     return out.fromBufferAttribute(this.mesh.geometry.getAttribute("position"), index).applyMatrix4(this.group.matrix);
+  }
+
+  /** Up to `count` of the vertices in a sphere, with their unit normals, world space, at the frame shown. */
+  feet(center: THREE.Vector3, radius: number, count: number): Foot[] {
+    const within: number[] = [];
+    const place = new THREE.Vector3();
+    for (let k = 0; k < this.displacement.length; ++k) {
+      if (this.vertex(k, place).distanceToSquared(center) < radius * radius) within.push(k);
+    }
+    const normals = this.mesh.geometry.getAttribute("normal");
+    const toWorld = new THREE.Matrix3().getNormalMatrix(this.group.matrix);
+    const shown = Math.min(count, within.length);
+    return Array.from({ length: shown }, (_, n) => {
+      const vertex = within[Math.floor(((n + 0.5) * within.length) / shown)];
+      return { place: this.vertex(vertex), normal: new THREE.Vector3().fromBufferAttribute(normals, vertex).applyMatrix3(toWorld).normalize() };
+    });
   }
 
   dispose(): void {

@@ -130,7 +130,10 @@ export class Viewer {
       }
     });
     this.gizmos.group.visible = display.hasGizmos;
-    this.gizmos.show(index, playback.share, isShown, pushes);
+    this.gizmos.show(index, playback.share, isShown, pushes, ({ targets }, center, radius, count) => {
+      const pushed = this.views.filter(({ surface }) => targets.length === 0 || targets.includes(surface.head.name));
+      return pushed.flatMap((view) => view.feet(center, radius, Math.ceil(count / pushed.length))).slice(0, count);
+    });
     this.stage.invalidate();
   }
 

@@ -60,6 +60,10 @@ class WholeChecker {
       if (findings_.is_over(parts_of_object)) return;
       check(force);
     }
+    for (const Group& group : scene_.groups) {
+      if (findings_.is_over(parts_of_object)) return;
+      check_follow(group);
+    }
     check_targets();
   }
 
@@ -317,13 +321,8 @@ class WholeChecker {
       return;
     }
     if (surfaces_.contains("")) return;  // it may be the one that is meant
-    std::vector<std::string_view> drivers;
-    for (const Surface& other : scene_.surfaces) {
-      if (!findings_.may_compare_names()) break;
-      if (!other.is_driven() && other.name != surface.name) drivers.push_back(other.name);
-    }
     refuse(fmt::format("no surface is named {}{}", in_quotes(surface.driven_by),
-                       hint_among(surface.driven_by, drivers)));
+                       hint_among(surface.driven_by, solved_surfaces(surface.name))));
   }
 
   void check_reading(const Surface& surface) {
@@ -358,11 +357,53 @@ class WholeChecker {
     refuse("weld", reading.weld.has_value());
   }
 
+  // Also of a group.
+  template <class Follower>
+  void check_follow(const Follower& follower) {
+    if (follower.follow.empty() || !is_sound(follower.name, "follow")) return;
+    const auto refuse = [&](std::string_view reason) {
+      complain(follower.name, "follow", fmt::format("{}.follow: {}", follower.name, reason));
+    };
+    if (const auto found = surfaces_.find(follower.follow); found != surfaces_.end()) {
+      if (found->second->is_driven())
+        refuse(fmt::format("{} is driven by {}; follow that one", in_quotes(follower.follow),
+                           in_quotes(found->second->driven_by)));
+      return;
+    }
+    if (surfaces_.contains("")) return;  // it may be the one that is meant
+    refuse(fmt::format("no surface is named {}{}", in_quotes(follower.follow),
+                       hint_among(follower.follow, solved_surfaces(""))));
+  }
+
+  // Those that others may be driven by or follow, but for one; none if names are not compared.
+  std::vector<std::string_view> solved_surfaces(std::string_view without) {
+    std::vector<std::string_view> names;
+    for (const Surface& surface : scene_.surfaces) {
+      if (!findings_.may_compare_names()) break;
+      if (!surface.is_driven() && surface.name != without) names.push_back(surface.name);
+    }
+    return names;
+  }
+
   void check(const Force& force) {
     if (!force.group.empty() && !groups_.contains(force.group))
       complain(
           force.name, "group",
           fmt::format("force \"{}\" is in \"{}\", which is not a group", force.name, force.group));
+    check_follow(force);
+    std::visit(
+        [&]<class Kind>(const Kind&) {
+          const auto has_no = [&](std::string_view attribute, std::string_view what) {
+            complain(force.name, attribute,
+                     fmt::format("{}.{}: a force of kind {} has no {}", force.name, attribute,
+                                 Description<Kind>::element, what));
+          };
+          if constexpr (!requires { Description<Kind>::has_place; })
+            if (!force.follow.empty()) has_no("follow", "place");
+          if constexpr (!requires { Description<Kind>::has_direction; })
+            if (force.along != PushAlong::Free) has_no("along", "direction");
+        },
+        force.kind);
     const auto* const custom = std::get_if<CustomForce>(&force.kind);
     if (custom && !custom->unit_force)
       complain(force.name, "unit_force",

@@ -12,10 +12,11 @@
 namespace pliant::xml {
 namespace {
 
-constexpr std::string_view force_elements = "point radial line uniform vortex noise inertia";
+constexpr std::string_view force_elements =
+    "point radial line uniform vortex noise inertia pressure";
 constexpr std::string_view selecting_elements =
-    "point radial line uniform vortex noise inertia group";
-constexpr std::string_view centred_elements = "point radial vortex noise group";
+    "point radial line uniform vortex noise inertia pressure group";
+constexpr std::string_view centred_elements = "point radial vortex noise pressure group";
 constexpr std::string_view mesh_elements = "mesh subdivision";
 
 // A word is in the first row that has it for the element. The names are those of Maya, Houdini,
@@ -56,6 +57,8 @@ constexpr ArtistWords known_words[] = {
      "deformationRadius forceRadius"},
     {"group", "radius size falloffradius range maxdistance distance reach influence",
      "deformationRadius"},
+    {"point radial line vortex noise pressure group",
+     "parent attach attachto stick carrier ride rideon", "follow"},
     {force_elements, "decay attenuation profile curve ramp softness", "falloff"},
     {centred_elements, "position location translation translate pos origin place at offset",
      "center"},
@@ -124,7 +127,8 @@ constexpr ElementWords known_elements[] = {
     {"explosion blast bomb attractor attract magnet repel repulsor repulsion implode explode",
      "<radial>, which pushes away from its centre, or pulls with a negative magnitude"},
     {"swirl whirl tornado twist twirl whirlpool", "<vortex>"},
-    {"force forces poke push press pressure touch finger locator deformer softmod cluster",
+    {"inflate inflation balloon blow puff", "<pressure>"},
+    {"force forces poke push press touch finger locator deformer softmod cluster",
      "<point>, which pushes along one direction"},
     {"capsule segment stroke", "<line>"},
     {"ball sphere", "<point> or <radial> for a force, <mesh> for a shape"},

@@ -109,7 +109,12 @@ Contents contents_of(Force& force) {
   made.may_include = true;
   SlotMaker maker;
   describe(maker, force);
-  std::visit([&](auto& kind) { describe(maker, kind); }, force.kind);
+  std::visit(
+      [&]<class Kind>(Kind& kind) {
+        Description<Force>::rows_of<Kind>(maker, force);
+        describe(maker, kind);
+      },
+      force.kind);
   made.attributes = maker.take();
   Description<Force>::children(ContentsMaker(made), force);
   if (!force.group.empty())

@@ -11,6 +11,7 @@ namespace pliant {
 
 // In the order of its values.
 inline constexpr std::string_view falloff_words[] = {"constant", "linear", "smooth", "gaussian"};
+inline constexpr std::string_view push_along_words[] = {"free", "normal"};
 
 // What an element says that is stored in several members of a thing; `Of` is the thing, const or
 // not.
@@ -40,6 +41,12 @@ struct MembersOf {
 // Rows that forces and groups share.
 inline constexpr Attribute targets_attribute{
     .name = "targets", .meaning = "the surfaces it acts on", .absent = "all surfaces"};
+inline constexpr Attribute follow_attribute{
+    .name = "follow",
+    .meaning =
+        "the surface in whose object space its places and directions are; it rides on the "
+        "surface's transform, or on its cache",
+    .absent = "the world"};
 inline constexpr Attribute deformation_radius_attribute{
     .name = "deformationRadius",
     .meaning = "nearer vertices select the region that is solved",
@@ -72,6 +79,18 @@ struct Description<Force> {
         of.falloff...);
   }
 
+  /// What only some kinds have.
+  template <class Kind, class Row, class... Of>
+  static void rows_of(Row&& row, Of&... of) {
+    if constexpr (requires { Description<Kind>::has_place; }) row(follow_attribute, of.follow...);
+    if constexpr (requires { Description<Kind>::has_direction; })
+      row(Attribute{.name = "along",
+                    .meaning = "`free`: it pushes as it is; `normal`: only its part along the "
+                               "normal of the surface pushes",
+                    .words = push_along_words},
+          of.along...);
+  }
+
   template <class Visit, class Of>
   static void children(Visit&& child, Of& force) {
     child(Child{}, force.falloff_curve);
@@ -91,6 +110,7 @@ struct Description<Group> {
                   .meaning = "a disabled group selects nothing, and its forces push nothing"},
         of.enabled...);
     row(targets_attribute, of.targets...);
+    row(follow_attribute, of.follow...);
     row(Attribute{.name = "center", .meaning = "centre of the region", .unit = "length"},
         of.center...);
     row(deformation_radius_attribute, of.deformation_radius...);
@@ -111,7 +131,8 @@ struct Description<GroupIn<Of>> : Description<Group> {
 };
 
 // The kinds of forces. `Sampled` is the kind at one frame: its members have the same names. Kinds
-// without it are sampled in sampling/sampling.cpp.
+// without it are sampled in sampling/sampling.cpp. A kind that `has_place` may follow a surface,
+// one that `has_direction` may push along normals.
 
 inline constexpr std::string_view push_direction =
     "direction of the push; its length does not matter";
@@ -122,6 +143,7 @@ struct Description<PointChannels> {
   static constexpr std::string_view meaning =
       "A force that pushes along a direction, near its centre.";
   using Sampled = PointForce;
+  static constexpr bool has_place = true, has_direction = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -136,6 +158,7 @@ struct Description<RadialChannels> {
   static constexpr std::string_view element = "radial";
   static constexpr std::string_view meaning = "A force that pushes away from its centre.";
   using Sampled = RadialForce;
+  static constexpr bool has_place = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -151,6 +174,7 @@ struct Description<LineChannels> {
   static constexpr std::string_view element = "line";
   static constexpr std::string_view meaning = "A force around a segment.";
   using Sampled = LineForce;
+  static constexpr bool has_place = true, has_direction = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -171,6 +195,7 @@ struct Description<UniformChannels> {
   static constexpr std::string_view meaning =
       "A force that is the same everywhere, such as gravity or wind.";
   using Sampled = UniformForce;
+  static constexpr bool has_direction = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -183,6 +208,7 @@ struct Description<VortexChannels> {
   static constexpr std::string_view element = "vortex";
   static constexpr std::string_view meaning = "A force that turns about an axis.";
   using Sampled = VortexForce;
+  static constexpr bool has_place = true, has_direction = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -206,6 +232,7 @@ struct Description<NoiseChannels> {
   static constexpr std::string_view element = "noise";
   static constexpr std::string_view meaning =
       "A force that differs smoothly from place to place and from time to time.";
+  static constexpr bool has_place = true, has_direction = true;
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
@@ -238,6 +265,22 @@ struct Description<InertiaChannels> {
 
   template <class Row, class... Of>
   static void rows(Row&&, Of&...) {}
+};
+
+template <>
+struct Description<PressureChannels> {
+  static constexpr std::string_view element = "pressure";
+  static constexpr std::string_view meaning =
+      "A force along the normals of the surface, that inflates it or, if it is negative, sucks it "
+      "in.";
+  using Sampled = PressureForce;
+  static constexpr bool has_place = true;
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "center", .meaning = "centre of what is pushed", .unit = "length"},
+        of.center...);
+  }
 };
 
 /// A program's own kind has no element; the command never sees one.
