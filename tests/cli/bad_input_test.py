@@ -45,6 +45,9 @@ BAD_SCENES = {
     "a channel below 0 in a loop": (
         GRID, GRID + '<solver loop="12"/><material>' + animated("damping", (1, 4), (9, 0), (12, -1)) +
         "</material>", 3, "sheet.damping at frame 10 is -"),
+    "a goal without a shape at rest": (
+        GRID, GRID + '<material goal="2"/><solver reference="none"/>', 3,
+        'sheet.goal is 2, but must be 0 with reference="none"'),
     "a damping and its ratio": (GRID, GRID + '<material damping="1" dampingRatio="0.1"/>', 3,
                                 "sheet.damping and sheet.dampingRatio are both given"),
     "a yield with exact steps": (

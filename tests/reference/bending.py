@@ -29,9 +29,9 @@ def second_difference(count, h, first, last, slopes):
 class Bending:
     """The energy of a plate on M x N nodes, numbered i * N + j."""
 
-    def __init__(self, shape, hu, hv, edges, b, c, d, poisson, tangents):
+    def __init__(self, shape, hu, hv, edges, b, c, d, poisson, tangents, goal=0):
         m, n = shape
-        self.shape = shape
+        self.shape, self.goal = shape, np.broadcast_to(goal, shape)
         b, c, d = (np.broadcast_to(x, shape).astype(float) for x in (b, c, d))
         along_u, slope_u, has_u = second_difference(
             m, hu, edges[0], edges[1], (tangents["su0"], tangents["su1"]))
@@ -70,7 +70,7 @@ class Bending:
         twist = sparse.diags(self.cells.ravel())
         return (self.of_u.T @ uu @ self.of_u + self.of_v.T @ vv @ self.of_v +
                 self.of_u.T @ uv @ self.of_v + self.of_v.T @ uv @ self.of_u +
-                self.of_cells.T @ twist @ self.of_cells).tocsc()
+                self.of_cells.T @ twist @ self.of_cells + self.weighted(self.goal)).tocsc()
 
     def slope_forces(self):
         """Minus the gradient that the tangents make."""

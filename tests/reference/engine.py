@@ -259,6 +259,8 @@ class SurfaceRun:
                                  for name in ("density", "damping", "b", "c", "d", "dt")))
             if self.surface.channels["dampingRatio"]:
                 assert self.surface.sample("dampingRatio", frame) >= 0
+            goal = self.surface.sample("goal", frame)
+            assert goal >= 0 and (goal == 0 or self.surface.choices["reference"] == "rest")
             material = self.surface.material(frame)
             if self.surface.yields:
                 check_yield(material, self.surface.sample("timeScale", frame))

@@ -5,7 +5,7 @@ import zlib
 
 import numpy as np
 
-CHANNELS = ("density", "damping", "b", "c", "d", "yield", "hardening")
+CHANNELS = ("density", "damping", "b", "c", "d", "yield", "hardening", "goal")
 
 
 def read_png(path):

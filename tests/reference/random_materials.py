@@ -91,6 +91,24 @@ class MaterialMaker(YieldMaker):
             return []
         return lines
 
+    def goal(self, solver, surface, stiffness):
+        """The channel of a goal about as strong as the plate, and the line of its map."""
+        rng = self.goal_rng
+        if rng.random() < 0.7 or ("reference", "none") in solver:
+            return [], []
+        self.tags.add("goal")
+        channel = Channel("goal", text_of(stiffness * rng.uniform(0.05, 2)))
+        if rng.random() < 0.5 or any(uv is None or np.isnan(uv).any() for uv in surface.grid.uvs):
+            return [channel], []
+        self.tags.add("map goal")
+        file = f"{self.name}-{surface.name}-goal.png"
+        self.pictures[file] = grey_png(rng.integers(0, 256, rng.integers(1, 12, 2)))
+        with open(os.path.join(self.folder, file), "wb") as stream:
+            stream.write(self.pictures[file])
+        low, high = rng.uniform(0.2, 1.8, 2)
+        return [channel], [f'<map channel="goal" file="{file}" low="{text_of(low)}" '
+                           f'high="{text_of(high)}"/>']
+
     def surface_tail(self, lines, solver, surface, world):
         """Material, tangents and solver of a surface; returns its lines and the load's scale."""
         rng, out = self.rng, Writer()
@@ -140,7 +158,8 @@ class MaterialMaker(YieldMaker):
         else:
             channels.append(self.channel("damping", lambda: damping * rng.uniform(0.7, 1.4),
                                          0.15 if damping else 0))
-        write_element(out, 2, "material", [], channels, maps)
+        goal, map_of_goal = self.goal(solver, surface, stiffness)
+        write_element(out, 2, "material", [], channels + goal, maps + map_of_goal)
         edges = ["clamped"] * 4
         if is_whole_grid and self.chance(0.6):
             edges = self.edges(solver, kind == "static")

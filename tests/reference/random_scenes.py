@@ -41,8 +41,9 @@ class SceneMaker(ForceMaker, MaterialMaker):
         self.caches = {}  # samples, by file
         self.meshes = {}
         self.pictures = {}  # of maps, as bytes
-        # Its own numbers, so that maps change no other choice.
+        # Their own numbers, so that maps and goals change no other choice.
         self.map_rng = np.random.default_rng(zlib.crc32(name.encode()))
+        self.goal_rng = np.random.default_rng(zlib.crc32(name.encode()) + 1)
         self.surfaces = []  # (header line list before the material, choices)
         self.magnitude_factor = 1.0
 

@@ -17,7 +17,7 @@ from triangle_mesh import TriangleMesh, read_obj_corners
 
 TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
 MATERIAL_CHANNELS = {"density": 1, "damping": 1, "b": 1, "c": 2, "d": 1, "poisson": 0.3,
-                     "dampingRatio": None, "yield": None, "hardening": 0.1}
+                     "dampingRatio": None, "yield": None, "hardening": 0.1, "goal": 0}
 TANGENT_CHANNELS = {"su0": 0, "su1": 0, "sv0": 0, "sv1": 0}
 SOLVER_CHANNELS = {"dt": 0.01, "timeScale": 1}
 SOLVER_CHOICES = {
@@ -275,7 +275,7 @@ class Surface:
 
     def material(self, frame):
         """The material at a frame: numbers, and arrays of the nodes where there is a map."""
-        names = ["density", "damping", "b", "c", "d"] + ["yield", "hardening"] * self.yields
+        names = ["density", "damping", "b", "c", "d", "goal"] + ["yield", "hardening"] * self.yields
         return {name: self.sample(name, frame) * self.maps.get(name, 1.0) for name in names}
 
     def frame_length(self, frame, fps):

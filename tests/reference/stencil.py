@@ -91,6 +91,8 @@ def union_operator(interior, hu, hv, material):
                 matrix[row, number[node]] += weight
             else:
                 rim.append((row, node, weight))
+    goal = material["goal"] if np.ndim(material["goal"]) < 2 else material["goal"][interior]
+    matrix += scipy.sparse.diags(np.broadcast_to(goal, len(number)))
     return matrix.tocsc(), ghosts, rim
 
 
@@ -152,7 +154,7 @@ def advance(w, velocity, load, hu, hv, material, tangents, count, dt):
     rim_only[1:-1, 1:-1] = 0.0
     known = apply_operator(rim_only, hu, hv, *coefficients, tangents).reshape(-1, 3)
     mass = density / dt**2 + damping / dt
-    matrix = (operator + mass * scipy.sparse.identity(operator.shape[0])).tocsc()
+    matrix = (operator + (mass + material["goal"]) * scipy.sparse.identity(operator.shape[0])).tocsc()
     factor = scipy.sparse.linalg.splu(matrix)
     unknown = w[1:-1, 1:-1].reshape(-1, 3)
     speed = velocity[1:-1, 1:-1].reshape(-1, 3)

@@ -154,7 +154,7 @@ class Plasticity(unittest.TestCase):
     def test_curvatures_of_triangles_are_those_of_the_energy(self):
         # Where a triangle is one cell, exactly; where it is cut, their mean has less energy.
         mesh = square_mesh(5, np.random.default_rng(2), border="free")
-        material = {"density": 1.0, "damping": 0.0, "poisson": 0.3}
+        material = {"density": 1.0, "damping": 0.0, "poisson": 0.3, "goal": 0.0}
         for name, value in (("b", 1.0), ("c", 2.0), ("d", 1.5), ("yield", 1.0), ("hardening", 0.1)):
             material[name] = np.full(len(mesh.triangles), value)
         rng = np.random.default_rng(8)

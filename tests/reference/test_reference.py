@@ -28,7 +28,7 @@ from triangle_mesh import TriangleMesh  # noqa: E402
 from triangle_region import bending, hat_integrals, snapped  # noqa: E402
 
 FLAT = {name: np.zeros(1) for name in ("su0", "su1", "sv0", "sv1")}
-ISOTROPIC = {"density": 0.0, "damping": 0.0, "b": 1.0, "c": 2.0, "d": 1.0}
+ISOTROPIC = {"density": 0.0, "damping": 0.0, "b": 1.0, "c": 2.0, "d": 1.0, "goal": 0.0}
 
 
 def scene_from(text):
@@ -124,7 +124,7 @@ class Plate(unittest.TestCase):
         w, v = np.zeros((3, 3, 3)), np.zeros((3, 3, 3))
         load = np.full((3, 3, 3), 7.0)
         w[1, 1], v[1, 1] = 0.25, -3.0
-        material = {"density": 2.0, "damping": 5.0, "b": 1.0, "c": 2.0, "d": 1.0}
+        material = {"density": 2.0, "damping": 5.0, "b": 1.0, "c": 2.0, "d": 1.0, "goal": 0.0}
         k, dt = 24 / 0.5**4, 0.125
         mass = 2.0 / dt**2 + 5.0 / dt
         expected = (7.0 + mass * 0.25 + 2.0 / dt * -3.0) / (mass + k)

@@ -80,9 +80,11 @@ class TriangleRun:
                 phi[nodes] = np.maximum(phi[nodes], 0)
                 if centre is not None:
                     phi[centre] = 1
-        key = phi.tobytes()
+        # A goal holds what nothing else does.
+        has_goal = bool(np.any(self.surface.material(frame)["goal"]))
+        key = phi.tobytes(), has_goal
         if key not in self.regions:
-            self.regions[key] = Region(mesh, phi)
+            self.regions[key] = Region(mesh, phi, may_float=has_goal)
         return self.regions[key]
 
     def solve(self, frame):
@@ -124,7 +126,8 @@ class TriangleRun:
         load = transform.vector_to_object(load)
         material = triangle_material(surface, frame)
         is_static = not np.any(material["density"]) and not np.any(material["damping"])
-        assert not (region.floats and is_static), "a static patch that nothing holds"
+        assert not (region.floats and is_static and not np.any(material["goal"])), \
+            "a static patch that nothing holds"
         ratio = surface.channels["dampingRatio"]
         material["dampingRatio"] = None if ratio is None else surface.sample("dampingRatio", frame)
         tangents = {name: surface.channels[name](frame) for name in ("su0", "su1", "sv0", "sv1")}

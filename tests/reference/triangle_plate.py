@@ -29,8 +29,8 @@ def form_of(b, c, d, mesh, unit, material):
 
 
 def triangle_material(surface, frame):
-    """b, c, d, yield and hardening of each triangle: the mean of its corners'; density and damping of
-    each node."""
+    """b, c, d, yield and hardening of each triangle: the mean of its corners'; density, damping and goal
+    of each node."""
     mesh, material = surface.grid, surface.material(frame)
     for name in {"b", "c", "d", "yield", "hardening"} & set(material):
         at_points = mesh.at_points(np.broadcast_to(material[name], len(mesh.rest)))
@@ -109,6 +109,10 @@ class Plate:
             values.append((np.outer(signs, signs) * matrix[np.ix_(of_six, of_six)]).ravel())
         triplets = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
         self.stiffness = scipy.sparse.csc_matrix(triplets, shape=(count, count))
+        goals = np.zeros(count)
+        nodes = region.moving_nodes
+        goals[:len(nodes)] = region.masses() * np.broadcast_to(material["goal"], len(mesh.rest))[nodes]
+        self.stiffness = (self.stiffness + scipy.sparse.diags(goals)).tocsc()
         self.right = right
 
     def dampings(self, masses, density, ratio):

@@ -80,7 +80,7 @@ std::vector<double> other_value(const NamedChannel& named, int frame) {
     if (std::holds_alternative<const Switch*>(named.channel)) {
       number = 1 - number;
     } else {
-      number = number == 0 ? 0.0625 * frame : number * (1 + 0.03125 * frame);
+      number = number == 0 ? 0.0625 * std::abs(frame) : number * (1 + 0.03125 * frame);
     }
   }
   // With release="recover" tangents must stay 0.

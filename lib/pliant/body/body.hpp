@@ -28,6 +28,7 @@ struct BodyInputs {
   EdgeTangents tangents;  ///< object space
   double poisson = 0.3;   ///< acts with a free border or edge, maps of b, c, d, and a law [1]
   std::optional<PlasticLaw> law = {};  ///< of a body that yields, and of no other
+  double goal = 0;                     ///< >= 0, pulls back to rest [1/uv^4]
   double frame_length = 0;             ///< [s], > 0
   double dt = 0;                       ///< [s], accepted by `check_time_step`
   std::vector<SampledForce> forces;    ///< the enabled ones that target the body, world space

@@ -46,9 +46,9 @@ std::shared_ptr<const NodeFactors> factors_on(const Grid& grid, const Patch& pat
     }
     return part;
   };
-  const auto& [density, damping, b, c, d, yield, hardening] = *factors;
-  NodeFactors part{part_of(density), part_of(damping), part_of(b),        part_of(c),
-                   part_of(d),       part_of(yield),   part_of(hardening)};
+  const auto& [density, damping, b, c, d, yield, hardening, goal] = *factors;
+  NodeFactors part{part_of(density), part_of(damping), part_of(b),         part_of(c),
+                   part_of(d),       part_of(yield),   part_of(hardening), part_of(goal)};
   return std::make_shared<const NodeFactors>(std::move(part));
 }
 
@@ -120,6 +120,7 @@ std::unique_ptr<PatchPlate> GridBody::plate_of(const BodyInputs& inputs, const S
   PlateSystem system{outline_of(grid_, one), inputs.stiffness, 0};
   system.poisson = poisson_of(inputs, one, factors_.get());
   system.factors = factors_on(grid_, one, factors_);
+  system.goal = inputs.goal;
   return std::make_unique<GridPatchPlate>(std::move(system), context_);
 }
 
@@ -149,12 +150,26 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
     plan.settling = settling_nodes(grid_, rest_, state_.positions, state_.velocities,
                                    selection.regions, room.marks, std::move(plan.settling));
   }
+  for (Region& region : selection.regions) {
+    for (Patch& patch : region.patches) {
+      patch.has_goal = false;
+      if (inputs.goal > 0 && !patch.is_held()) patch.has_goal = is_held_by_goal(inputs, patch);
+    }
+  }
   for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
     ForceSelection& force = selection.forces[k];
     force.pushes = pushes(grid_, room.tiles.nodes(), inputs.forces[k], force.force,
                           selection.patches_of_force(k));
   }
   return {};
+}
+
+// Whether a goal holds a patch that its edges do not.
+bool GridBody::is_held_by_goal(const BodyInputs& inputs, const Patch& patch) const {
+  PlateSystem system{outline_of(grid_, patch), inputs.stiffness};
+  system.factors = factors_on(grid_, patch, factors_);
+  system.goal = inputs.goal;
+  return pliant::is_held(system);
 }
 
 // Finds the forces that lost their nodes. Selects on the rest mesh only for forces with an empty
@@ -233,17 +248,18 @@ void GridBody::find_rows(Solve& one) const {
 
 std::string GridBody::not_held(std::size_t) const {
   if (plan_.is_whole) {
-    return "nothing holds a static surface: give it a density or a damping, or a clamped edge or "
-           "two pinned ones";
+    return "nothing holds a static surface: give it a density or a damping, a clamped edge or two "
+           "pinned ones, or a goal";
   }
-  return "nothing holds a static surface that is closed along u and v: give it a density or a "
-         "damping, or select less: the forces select all of it";
+  return "nothing holds a static surface that is closed along u and v: give it a density, a "
+         "damping or a goal, or select less: the forces select all of it";
 }
 
 void GridBody::take_material(const BodyInputs& inputs, std::size_t k) {
   Solve& one = solves_[k];
   one.problem.stiffness = inputs.stiffness;
   one.problem.poisson = poisson_of(inputs, *one.patch, factors_.get());
+  one.problem.goal = inputs.goal;
   if (one.box == one.patch->box) return;
   one.problem.factors = factors_on(grid_, *one.patch, factors_);
   one.box = one.patch->box;

@@ -53,6 +53,7 @@ class GridBody final : public ElasticBody {
   };
 
   Result<void> plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const;
+  bool is_held_by_goal(const BodyInputs& inputs, const Patch& patch) const;
   void find_lost(const BodyInputs& inputs, Room& room, Selection& selection) const;
   void keep_outlines();
   void find_rows(Solve& one) const;

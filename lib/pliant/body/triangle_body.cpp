@@ -4,6 +4,7 @@
 #include <numeric>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "pliant/body/patch_plate.hpp"
@@ -35,6 +36,24 @@ SolverChoice factor_of(SolverChoice choice) {
 Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border) {
   const bool is_free = border == Border::Free;
   return bending_of(inputs.stiffness, unit, is_free ? std::optional(inputs.poisson) : std::nullopt);
+}
+
+bool are_beyond_line(const Field& rest, const std::vector<int>& nodes) {
+  constexpr double rounding = 1e-9;
+  if (nodes.empty()) return false;
+  const Vector3d first = rest.row(nodes.front()).transpose();
+  Vector3d along(0, 0, 0);
+  for (const int node : nodes) {
+    const Vector3d way = rest.row(node).transpose() - first;
+    if (length_of(way) > length_of(along)) along = way;
+  }
+  const double length = length_of(along);
+  if (!(length > 0)) return false;
+  along /= length;
+  return std::ranges::any_of(nodes, [&](int node) {
+    const Vector3d way = rest.row(node).transpose() - first;
+    return length_of(way - along.dot(way) * along) > rounding * length;
+  });
 }
 
 std::vector<double> means_on_triangles(const TriangleSurface& surface,
@@ -86,6 +105,7 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
   };
   own.density = at_points(factors->density);
   own.damping = at_points(factors->damping);
+  own.goal = at_points(factors->goal);
   own.b = at_cells(factors->b);
   own.c = at_cells(factors->c);
   own.d = at_cells(factors->d);
@@ -104,18 +124,22 @@ std::shared_ptr<const CellFactors> factors_of(const TriangleSurface& surface,
 
 class TrianglePatchPlate final : public PatchPlate {
  public:
-  TrianglePatchPlate(std::unique_ptr<TrianglePlate> plate, const Bending& bending, bool is_held)
-      : plate_(std::move(plate)), bending_(bending), is_held_(is_held) {}
+  TrianglePatchPlate(std::unique_ptr<TrianglePlate> plate, const Bending& bending, double goal,
+                     bool is_held)
+      : plate_(std::move(plate)), bending_(bending), goal_(goal), is_held_(is_held) {}
 
-  Result<VibratingPlate> vibrating() override { return pliant::vibrating(*plate_, bending_); }
+  Result<VibratingPlate> vibrating() override {
+    return pliant::vibrating(*plate_, bending_, 0, goal_);
+  }
   Result<double> smallest_eigenvalue() override {
-    return pliant::smallest_eigenvalue(*plate_, bending_, is_held_);
+    return pliant::smallest_eigenvalue(*plate_, bending_, is_held_, goal_);
   }
   std::size_t memory() const override { return plate_->memory(); }
 
  private:
   std::unique_ptr<TrianglePlate> plate_;
   Bending bending_;
+  double goal_;
   bool is_held_;
 };
 
@@ -155,7 +179,7 @@ std::unique_ptr<PatchPlate> TriangleBody::plate_of(const BodyInputs& inputs, con
                                                    std::size_t region, std::size_t) const {
   return std::make_unique<TrianglePatchPlate>(
       make_plate(*plan.surface, region, available_solvers().front()),
-      bending_of(inputs, surface_->unit, settings_.border),
+      bending_of(inputs, surface_->unit, settings_.border), inputs.goal,
       plan.surface->patches[region].is_held());
 }
 
@@ -185,6 +209,7 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
     if (selection.patches.empty()) {
       if (auto selected = select_all(selection); !selected) return selected;
     }
+    find_goals(inputs, selection);
     return weigh(surface, tree, inputs, selection);
   }
   LevelSet level_set =
@@ -211,10 +236,27 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
     if (!patches) return fail(patches.error());
     selection.patches = *std::move(patches);
   }
+  find_goals(inputs, selection);
   return weigh(surface, tree, inputs, selection);
 }
 
-// Patches that nothing holds move too.
+// Patches that nothing else holds move if a goal pulls them back, and stay in place if it does so
+// at nodes beyond one line.
+void TriangleBody::find_goals(const BodyInputs& inputs, TriangleSelection& selection) const {
+  for (TrianglePatch& patch : selection.patches) {
+    patch.has_goal = false;
+    patch.may_float = settings_.region == SolvedRegion::All;
+    if (inputs.goal == 0 || patch.is_held()) continue;
+    std::vector<int> nodes;  // with a goal
+    for (int k = 0; k < patch.free_nodes; ++k) {
+      const int node = selection.level_set.nodes[patch.points[k]];
+      if (!factors_ || factor_at(factors_->goal, node) > 0) nodes.push_back(node);
+    }
+    patch.may_float = patch.may_float || !nodes.empty();
+    patch.has_goal = are_beyond_line(surface_->rest, nodes);
+  }
+}
+
 Result<void> TriangleBody::select_all(TriangleSelection& selection) const {
   std::vector<int> nodes(static_cast<std::size_t>(surface_->node_count()));
   std::iota(nodes.begin(), nodes.end(), 0);
@@ -223,7 +265,6 @@ Result<void> TriangleBody::select_all(TriangleSelection& selection) const {
       cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
   if (!patches) return fail(patches.error());
   selection.patches = *std::move(patches);
-  for (TrianglePatch& patch : selection.patches) patch.may_float = true;
   return {};
 }
 
@@ -332,20 +373,23 @@ int TriangleBody::first_node(std::size_t k) const {
 
 std::string TriangleBody::not_held(std::size_t k) const {
   return "nothing holds the patch with node " + std::to_string(first_node(k)) +
-         ", which is static: give it a density or a damping";
+         ", which is static: give it a density, a damping or a goal";
 }
 
 void TriangleBody::take_material(const BodyInputs& inputs, std::size_t k) {
   solves_[k].problem.bending = bending_of(inputs, surface_->unit, settings_.border);
+  solves_[k].problem.goal = inputs.goal;
 }
 
 Result<double> TriangleBody::smallest_eigenvalue_of(std::size_t k) {
   Solve& one = solves_[k];
-  if (!one.lambda || one.bending != one.problem.bending) {
-    auto lambda = smallest_eigenvalue(*one.plate, one.problem.bending, one.is_held);
+  const auto& [bending, goal] = std::tie(one.problem.bending, one.problem.goal);
+  if (!one.lambda || one.bending != bending || one.goal != goal) {
+    auto lambda = smallest_eigenvalue(*one.plate, bending, one.is_held, goal);
     if (!lambda) return lambda;
     one.lambda = *lambda;
-    one.bending = one.problem.bending;
+    one.bending = bending;
+    one.goal = goal;
   }
   return *one.lambda;
 }

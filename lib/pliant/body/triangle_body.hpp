@@ -17,6 +17,10 @@ namespace pliant {
 /// `TriangleSurface`.
 Bending bending_of(const BodyInputs& inputs, const std::array<double, 2>& unit, Border border);
 
+/// Whether any three of a surface's nodes at rest are far from one line: what a goal pulls back
+/// there cannot move without it.
+bool are_beyond_line(const Field& rest, const std::vector<int>& nodes);
+
 /// Factors at the nodes of a surface as means over the corners of each of its triangles
 /// (#triangles); a centre has the mean of its face's corners. None stay none.
 std::vector<double> means_on_triangles(const TriangleSurface& surface,
@@ -60,11 +64,14 @@ class TriangleBody final : public ElasticBody {
     const TrianglePatch* patch = nullptr;
     std::unique_ptr<TrianglePlate> plate;  // null: the patch does not move
     TriangleProblem problem;
-    std::optional<double> lambda;  // of the plate's slowest vibration with `bending`, if known
+    // Of the plate's slowest vibration with `bending` and `goal`, if known.
+    std::optional<double> lambda;
     Bending bending;
+    double goal = 0;
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
+  void find_goals(const BodyInputs& inputs, TriangleSelection& selection) const;
   Result<void> select_all(TriangleSelection& selection) const;
   Result<void> plan_on(const TriangleSurface& surface, const PointTree& tree,
                        const BodyInputs& inputs, StepPlan& plan) const;

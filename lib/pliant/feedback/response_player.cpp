@@ -40,7 +40,7 @@ bool ResponsePlayer::is_for_surface() const {
 }
 
 bool ResponsePlayer::has_patches(const BodyInputs& inputs, const StepPlan& plan) const {
-  return inputs.stiffness == stiffness_ && inputs.poisson == poisson_ &&
+  return inputs.stiffness == stiffness_ && inputs.poisson == poisson_ && inputs.goal == goal_ &&
          plan.surface->level_set == level_set_;
 }
 
@@ -84,6 +84,7 @@ Result<ResponseSpace*> ResponsePlayer::space_of(Patch& patch) {
 void ResponsePlayer::begin(const Body& body, const BodyInputs& inputs, const StepPlan& plan) {
   stiffness_ = inputs.stiffness;
   poisson_ = inputs.poisson;
+  goal_ = inputs.goal;
   level_set_ = plan.surface->level_set;
   patches_.clear();
   for (std::size_t k = 0; k < plan.surface->patches.size(); ++k) {

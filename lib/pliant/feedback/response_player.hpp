@@ -69,7 +69,7 @@ class ResponsePlayer {
   MemoryShare share_;
   LevelSet level_set_;  // of the patches
   Stiffness stiffness_;
-  double poisson_ = 0;
+  double poisson_ = 0, goal_ = 0;
   std::vector<Patch> patches_;
   double cost_ = 0;
 };

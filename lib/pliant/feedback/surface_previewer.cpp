@@ -307,7 +307,8 @@ std::vector<int> SurfacePreviewer::strongest_of(const PreviewCase& one,
 std::optional<double> SurfacePreviewer::peak_in_proportion(const BodyInputs& inputs,
                                                            const StepPlan& step) const {
   if (!step.surface || !settled_ || !(settled_->stiffness == inputs.stiffness) ||
-      settled_->poisson != inputs.poisson || settled_->linear != inputs.transform.linear ||
+      settled_->poisson != inputs.poisson || settled_->goal != inputs.goal ||
+      settled_->linear != inputs.transform.linear ||
       !(settled_->level_set == step.surface->level_set))
     return {};
   constexpr double rounding = 1e-12;

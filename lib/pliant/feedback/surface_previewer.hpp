@@ -81,6 +81,7 @@ class SurfacePreviewer {
     Settled(const BodyInputs& inputs, const TriangleSelection& selection, double size)
         : stiffness(inputs.stiffness),
           poisson(inputs.poisson),
+          goal(inputs.goal),
           linear(inputs.transform.linear),
           level_set(selection.level_set),
           loads(selection.loads),
@@ -88,6 +89,7 @@ class SurfacePreviewer {
 
     Stiffness stiffness;
     double poisson;
+    double goal;
     Matrix3d linear;
     LevelSet level_set;
     std::vector<Field> loads;

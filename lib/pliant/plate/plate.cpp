@@ -17,7 +17,7 @@ bool Stiffness::is_elliptic() const { return b > 0 && d > 0 && c > least_c(); }
 
 bool operator==(const PlateSystem& one, const PlateSystem& other) {
   if (!(one.outline == other.outline) || !(one.stiffness == other.stiffness) ||
-      one.shift != other.shift || one.is_even() != other.is_even()) {
+      one.shift != other.shift || one.goal != other.goal || one.is_even() != other.is_even()) {
     return false;
   }
   if (one.is_even()) return true;

@@ -8,7 +8,7 @@ namespace pliant {
 
 // The plate equation on one patch of nodes: thesis 4.2, eq. 8; SPEC 2 to 4; docs/model.md.
 //
-//   b w_uuuu + c w_uuvv + d w_vvvv + rho w_tt + eta w_t = F                                     (1)
+//   b w_uuuu + c w_uuvv + d w_vvvv + g w + rho w_tt + eta w_t = F                               (1)
 //
 // w is the displacement (or the position itself, SPEC 2), one column for each of x, y, z. Here a
 // `Grid` is the smallest one around a patch and its rim, and an `Outline` says which of its nodes

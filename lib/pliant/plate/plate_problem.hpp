@@ -18,11 +18,14 @@ struct NodeFactors {
   std::vector<double> density, damping;
   std::vector<double> b, c, d;
   std::vector<double> yield, hardening;
+  std::vector<double> goal;
 
   bool have_stiffness() const { return !b.empty() || !c.empty() || !d.empty(); }
 
   /// Whether an elastic plate has some of them.
-  bool are_elastic() const { return have_stiffness() || !density.empty() || !damping.empty(); }
+  bool are_elastic() const {
+    return have_stiffness() || !density.empty() || !damping.empty() || !goal.empty();
+  }
 
   friend bool operator==(const NodeFactors&, const NodeFactors&) = default;
 };
@@ -33,11 +36,12 @@ inline double factor_at(const std::vector<double>& factors, int node) {
 }
 
 /// The system that a step solves: (shift I + L) w = f on the interior nodes of a clamped plate,
-/// where L is that of `Stencil` with rim and tangents 0. Symmetric, and positive definite when the
-/// stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
+/// where L is that of `Stencil` with rim and tangents 0, and a goal on its diagonal. Symmetric, and
+/// positive definite when the stiffness is elliptic and shift >= 0. docs/model.md, eq. (8).
 ///
 /// With free edges or uneven material L is K of docs/model.md, "One energy", and the shift at a
-/// node is weighted by its share of area. If no edge is clamped, K can be singular without a shift.
+/// node, and the goal, is weighted by its share of area. If no edge is clamped, K can be singular
+/// without a shift.
 struct PlateSystem {
   Outline outline;      ///< of at least 3 x 3 nodes
   Stiffness stiffness;  ///< elliptic
@@ -46,6 +50,7 @@ struct PlateSystem {
   double poisson = 0;  ///< matters with free edges and uneven stiffness [1]
   std::shared_ptr<const NodeFactors> factors = {};  ///< null: the material is even
   double drag = 0;  ///< eta/dt, the part of `shift` that a map of damping changes [1/uv^4]
+  double goal = 0;  ///< g >= 0, what pulls back to w = 0: a part of L [1/uv^4]
 
   /// Whether the edges, as far as they are no others, and the material are those of (1).
   bool is_even() const {
@@ -72,6 +77,7 @@ struct PlateProblem : PlateInterval {
 
   double poisson = 0;                               ///< as in `PlateSystem`
   std::shared_ptr<const NodeFactors> factors = {};  ///< as there
+  double goal = 0;                                  ///< as there
 
   /// Asked after each step with the displacement of all nodes (#nodes x 3); false: the steps that
   /// follow are not needed, and the result is not either. Null: nobody asks.
@@ -81,7 +87,7 @@ struct PlateProblem : PlateInterval {
 
   /// The system of steps of `dt`. [s]
   PlateSystem system(double dt) const {
-    return {outline, stiffness, dynamics.shift(dt), poisson, factors, dynamics.damping / dt};
+    return {outline, stiffness, dynamics.shift(dt), poisson, factors, dynamics.damping / dt, goal};
   }
 };
 

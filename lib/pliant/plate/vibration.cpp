@@ -55,7 +55,7 @@ Result<double> find_unheld(const std::function<Result<double>(double shift)>& fi
 
 // The motions of a rectangle that bend nothing: 1, u and v, as far as its edges allow them. A mask
 // has a rim.
-Eigen::MatrixXd rigid_motions(const Outline& outline) {
+Eigen::MatrixXd unbent_motions(const Outline& outline) {
   const Grid& grid = outline.grid();
   const Edges& edges = outline.edges();
   int pinned = 0;
@@ -90,7 +90,38 @@ Eigen::MatrixXd rigid_motions(const Outline& outline) {
   return all(Eigen::all, columns);
 }
 
+// Those of them that no goal resists: they are 0 at all nodes that it pulls back. The numbers are
+// whole, and so small that none is rounded.
+Eigen::MatrixXd rigid_motions(const PlateSystem& system) {
+  Eigen::MatrixXd motions = unbent_motions(system.outline);
+  if (motions.cols() == 0 || system.goal == 0) return motions;
+  const Grid& grid = system.outline.grid();
+  Eigen::Index row = 0;
+  system.outline.for_each_run([&](const Outline::Run& run) {
+    for (int i = run.i0; i <= run.i1 && motions.cols() > 0; ++i, ++row) {
+      const int node = grid.node(i, run.j);
+      if (system.factors && factor_at(system.factors->goal, node) == 0) continue;
+      Eigen::Index pivot = -1;
+      for (Eigen::Index k = 0; k < motions.cols(); ++k) {
+        const double own = std::abs(motions(row, k));
+        if (own > 0 && (pivot < 0 || own < std::abs(motions(row, pivot)))) pivot = k;
+      }
+      if (pivot < 0) continue;
+      const Eigen::VectorXd moving = motions.col(pivot);
+      Eigen::MatrixXd left(motions.rows(), motions.cols() - 1);
+      for (Eigen::Index k = 0; k < left.cols(); ++k) {
+        const Eigen::Index from = k < pivot ? k : k + 1;
+        left.col(k) = moving(row) * motions.col(from) - motions(row, from) * moving;
+      }
+      motions = std::move(left);
+    }
+  });
+  return motions;
+}
+
 }  // namespace
+
+bool is_held(const PlateSystem& system) { return rigid_motions(system).cols() == 0; }
 
 Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system) {
   PLIANT_EXPECTS(system.shift >= 0 && unknown_count(system.outline) >= 1);
@@ -103,7 +134,7 @@ Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system)
                        .context = solver.context(),
                        .shift = system.shift};
   if (system.shift > 0) {
-    plate.rigid = rigid_motions(system.outline);
+    plate.rigid = rigid_motions(system);
     return plate;
   }
   // By a factor, which a shift below 0 does not matter to.
@@ -118,9 +149,10 @@ Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system)
   return plate;
 }
 
-Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift) {
+Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift,
+                                 double goal) {
   PLIANT_EXPECTS(!plate.masses().empty());
-  if (auto ready = plate.prepare(bending, shift); !ready) return fail(ready.error());
+  if (auto ready = plate.prepare(bending, shift, goal); !ready) return fail(ready.error());
   const auto count = static_cast<Eigen::Index>(plate.masses().size());
   const VibratingPlate::Solve solve = [&plate](const Field& forces) { return plate.solve(forces); };
   VibratingPlate vibrating{.solve = solve,
@@ -132,10 +164,11 @@ Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, d
     return plate.solve(forces, TrianglePlate::Accuracy::Rough);
   };
   if (shift > 0) return vibrating;
-  vibrating.matrix = [&plate, bending] { return plate.stiffness(bending); };
+  vibrating.matrix = [&plate, bending, goal] { return plate.stiffness(bending, goal); };
   vibrating.solver = plate.solver();
-  vibrating.shifted = [&plate, bending, solve](double other) -> Result<VibratingPlate::Solve> {
-    if (auto ready = plate.prepare(bending, other); !ready) return fail(ready.error());
+  vibrating.shifted = [&plate, bending, goal,
+                       solve](double other) -> Result<VibratingPlate::Solve> {
+    if (auto ready = plate.prepare(bending, other, goal); !ready) return fail(ready.error());
     return solve;
   };
   return vibrating;
@@ -148,7 +181,7 @@ Result<double> smallest_eigenvalue(PlateSolver& solver, PlateSystem system) {
     if (!plate) return fail(plate.error());
     return smallest_eigenvalue(*plate);
   };
-  const Eigen::Index rigid = rigid_motions(system.outline).cols();
+  const Eigen::Index rigid = rigid_motions(system).cols();
   if (rigid == 0) return find(0);
   if (rigid == unknown_count(system.outline)) return 0.0;
   // As slow as a beam of the longer side.
@@ -161,9 +194,10 @@ Result<double> smallest_eigenvalue(PlateSolver& solver, PlateSystem system) {
       find, std::min(slow(system.stiffness.b, columns * hu), slow(system.stiffness.d, rows * hv)));
 }
 
-Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held) {
+Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held,
+                                   double goal) {
   const auto find = [&](double shift) -> Result<double> {
-    const auto vibrates = vibrating(plate, bending, shift);
+    const auto vibrates = vibrating(plate, bending, shift, goal);
     if (!vibrates) return fail(vibrates.error());
     return smallest_eigenvalue(*vibrates);
   };

@@ -33,14 +33,19 @@ struct VibratingPlate {
   Result<Field> solve_roughly(const Field& forces) const { return (rough ? rough : solve)(forces); }
 };
 
+/// Whether a static plate has a solution: the edges hold it, or those motions that they leave and
+/// that bend nothing move a node that a goal pulls back.
+bool is_held(const PlateSystem& system);
+
 /// The unknowns of a plate, rim and tangents 0, with the nodes' shares of area as masses, times the
 /// factors of a map of density. Requires: system.shift is 0, or > 0 if nothing holds the plate; at
 /// least one unknown; the solver outlives the result. Errors: those of `prepare`.
 Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system);
 
 /// A plate of triangles, its held points and slopes at 0. Requires: it has masses, and outlives the
-/// result; shift > 0 if nothing holds it. Errors: those of `prepare`.
-Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift = 0);
+/// result; shift > 0 if nothing holds it, nor a goal. Errors: those of `prepare`.
+Result<VibratingPlate> vibrating(TrianglePlate& plate, const Bending& bending, double shift = 0,
+                                 double goal = 0);
 
 /// The smallest eigenvalue lambda of a plate that is not that of a rigid motion [1/uv^4]: the
 /// slowest free vibration of a plate of density rho has the angular frequency sqrt(lambda / rho)
@@ -54,8 +59,9 @@ Result<double> smallest_eigenvalue(const VibratingPlate& plate);
 /// The same of a plate of a grid, whose shift is not read. Prepares the solver.
 Result<double> smallest_eigenvalue(PlateSolver& solver, PlateSystem system);
 
-/// The same of a plate of triangles; `is_held`: whether anything holds it.
-Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held);
+/// The same of a plate of triangles; `is_held`: whether anything holds it, or its goal does.
+Result<double> smallest_eigenvalue(TrianglePlate& plate, const Bending& bending, bool is_held,
+                                   double goal = 0);
 
 /// A vibration of a plate that is released, as seen at one of its nodes.
 struct ExcitedMode {

@@ -240,7 +240,9 @@ std::vector<Region> combine(std::span<const Box> boxes, Combine how, const Grid&
   return regions;
 }
 
-bool Patch::is_held() const { return !interior.empty() || edges.hold(is_ring_u, is_ring_v); }
+bool Patch::is_held() const {
+  return has_goal || !interior.empty() || edges.hold(is_ring_u, is_ring_v);
+}
 
 int Patch::interior_count() const {
   if (interior.empty()) return inner().columns() * inner().rows();

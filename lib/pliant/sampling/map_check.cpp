@@ -24,7 +24,7 @@ struct MapPlace {
 // The factors of all channels at a place.
 struct PlaceFactors {
   MapPlace place;
-  double density = 1, damping = 1, b = 1, c = 1, d = 1, yield = 1, hardening = 1;
+  double density = 1, damping = 1, b = 1, c = 1, d = 1, yield = 1, hardening = 1, goal = 1;
 };
 
 // Finds the places that decide: those with the least and the largest factor of each channel, and of
@@ -41,7 +41,8 @@ class DecidingPlaces {
                factor_at(factors.c, node),
                factor_at(factors.d, node),
                factor_at(factors.yield, node),
-               factor_at(factors.hardening, node)});
+               factor_at(factors.hardening, node),
+               factor_at(factors.goal, node)});
     }
     if (!shape.surface) return;
     const TriangleSurface& surface = *shape.surface;
@@ -80,8 +81,8 @@ class DecidingPlaces {
 
   void look_at(const PlaceFactors& at) {
     const double ratio = at.b > 0 && at.d > 0 ? at.c / std::sqrt(at.b * at.d) : 1;
-    const double numbers[] = {at.density, at.damping, at.b,         at.c,
-                              at.d,       at.yield,   at.hardening, ratio};
+    const double numbers[] = {at.density, at.damping,   at.b,    at.c, at.d,
+                              at.yield,   at.hardening, at.goal, ratio};
     for (std::size_t k = 0; k < std::size(numbers); ++k) {
       Extreme& extreme = extremes_[k];
       if (numbers[k] < extreme.low) extreme.low = numbers[k], extreme.least = at;
@@ -89,7 +90,7 @@ class DecidingPlaces {
     }
   }
 
-  std::array<Extreme, 8> extremes_;
+  std::array<Extreme, 9> extremes_;
 };
 
 class MapChecker {
@@ -98,10 +99,10 @@ class MapChecker {
       : scene_(scene), surface_(surface), shape_(shape), places_(DecidingPlaces(shape).all()) {}
 
   std::vector<Error> check(int first, int last) {
-    const auto& [density, damping, damping_ratio, b, c, d, yield, hardening, poisson] =
+    const auto& [density, damping, damping_ratio, b, c, d, yield, hardening, poisson, goal] =
         surface_.material;
     bool is_animated = yield && yield->is_animated();
-    for (const Channel<1>* channel : {&density, &damping, &b, &c, &d, &hardening, &poisson})
+    for (const Channel<1>* channel : {&density, &damping, &b, &c, &d, &hardening, &poisson, &goal})
       is_animated = is_animated || channel->is_animated();
     is_animated_ = is_animated;
     for (int frame = first; frame <= (is_animated ? last : first); ++frame) check_frame(frame);
@@ -120,6 +121,7 @@ class MapChecker {
     for (const PlaceFactors& at : places_) {
       check_range(MapChannel::Density, frame, at, density * at.density, false);
       check_range(MapChannel::Damping, frame, at, damping * at.damping, false);
+      check_range(MapChannel::Goal, frame, at, material.goal.at(frame)[0] * at.goal, false);
       const bool is_sound = check_range(MapChannel::B, frame, at, b * at.b, true) &&
                             check_range(MapChannel::D, frame, at, d * at.d, true);
       if (is_sound && shape_.factors->have_stiffness())

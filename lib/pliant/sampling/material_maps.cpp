@@ -193,8 +193,10 @@ std::vector<double>& factors_of_channel(NodeFactors& factors, MapChannel channel
       return factors.d;
     case MapChannel::Yield:
       return factors.yield;
-    default:
+    case MapChannel::Hardening:
       return factors.hardening;
+    default:
+      return factors.goal;
   }
 }
 

@@ -29,8 +29,8 @@ Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,
                               const StopRequest& should_stop = {});
 
 /// Checks what maps make of the material, at every node, every triangle of a surface, and every
-/// frame of the scene: density, damping and hardening >= 0, b, d and yield > 0, c > -2 sqrt(b d),
-/// all finite; with a map of b, c or d also |poisson| < 1 and c > 2 poisson sqrt(b d); an
+/// frame of the scene: density, damping, hardening and goal >= 0, b, d and yield > 0, c > -2 sqrt(b
+/// d), all finite; with a map of b, c or d also |poisson| < 1 and c > 2 poisson sqrt(b d); an
 /// integrator that is not backward Euler needs density at all nodes or at none; a static surface
 /// that yields needs hardening at all. At most one error per channel, with the frame, the place and
 /// the values. Requires: `check_channels` accepts the scene. Cost: two places a channel decide, so

@@ -356,6 +356,7 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
           .law = material.yield ? std::optional(PlasticLaw{material.yield->at(frame)[0],
                                                            material.hardening.at(frame)[0]})
                                 : std::nullopt,
+          .goal = material.goal.at(frame)[0],
           .frame_length = frame_length(scene, surface, frame),
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {},

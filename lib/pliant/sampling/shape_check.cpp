@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "pliant/body/triangle_body.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
+#include "pliant/plate/vibration.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
@@ -13,8 +15,10 @@
 namespace pliant {
 namespace {
 
-// The first node of a piece without a border that holds it; none: all are held.
-std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds) {
+// The first node of a piece that neither a border holds nor a goal; none: all are held. `goals`:
+// the factors of the nodes; null: there is no goal.
+std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
+                              const std::vector<double>* goals) {
   const std::vector<int> pieces = pieces_of(surface);
   std::vector<bool> is_held(pieces.size());  // by piece
   for (int face = 0; face < surface.face_count() && border_holds; ++face) {
@@ -22,6 +26,12 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds)
         surface.edges_of(face), [&](int edge) { return surface.edge_sides[edge] == 1; });
     if (has_border) is_held[pieces[surface.nodes_of(face).front()]] = true;
   }
+  std::vector<std::vector<int>> pulled(goals ? pieces.size() : 0);  // by piece
+  for (int node = 0; goals && node < surface.node_count(); ++node) {
+    if (pieces[node] >= 0 && factor_at(*goals, node) > 0) pulled[pieces[node]].push_back(node);
+  }
+  for (std::size_t piece = 0; piece < pulled.size(); ++piece)
+    is_held[piece] = is_held[piece] || are_beyond_line(surface.rest, pulled[piece]);
   const auto loose =
       std::ranges::find_if(pieces, [&](int piece) { return piece >= 0 && !is_held[piece]; });
   if (loose == pieces.end()) return {};
@@ -32,17 +42,24 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds)
 std::optional<Error> check_is_held(const Scene& scene, const Surface& surface,
                                    const RestShape& shape) {
   if (surface.solver.region != SolvedRegion::All) return {};
-  const auto found = static_frame_of(scene, surface, sampled_frames(scene, surface));
+  const FrameSpan frames = sampled_frames(scene, surface);
+  auto found = static_frame_of(scene, surface, frames);
+  // A goal everywhere holds all.
+  const bool has_map = shape.factors && !shape.factors->goal.empty();
+  const bool is_by_goal = !found && has_map;
+  if (is_by_goal) found = static_frame_of(scene, surface, frames, true);
   if (!found) return {};
   if (shape.grid) {
-    const auto& [is_closed_u, is_closed_v] =
-        std::pair(shape.grid->is_closed_u, shape.grid->is_closed_v);
-    if (surface.solver.edges.hold(is_closed_u, is_closed_v)) return {};
-    const bool has_edges = !is_closed_u || !is_closed_v;
+    PlateSystem system{Outline(*shape.grid, surface.solver.edges), {}};
+    if (is_by_goal) system.goal = surface.material.goal.at(found->frame)[0];
+    system.factors = shape.factors;
+    if (is_held(system)) return {};
+    const bool has_edges = !shape.grid->is_closed_u || !shape.grid->is_closed_v;
     return not_held(scene, surface, *found,
                     has_edges ? "" : "a surface that is closed along u and v");
   }
-  const auto node = loose_node(*shape.surface, surface.reading.border != Border::Free);
+  const auto node = loose_node(*shape.surface, surface.reading.border != Border::Free,
+                               is_by_goal ? &shape.factors->goal : nullptr);
   if (!node) return {};
   const auto vertex = std::ranges::find(shape.surface->vertex_nodes, *node);
   const auto index = static_cast<int>(vertex - shape.surface->vertex_nodes.begin());

@@ -80,12 +80,13 @@ struct MaterialChannels {
   Channel<1> hardening = 0.1;  ///< H >= 0, of a plate that yields
   /// nu: acts with a free border or edge, a map of b, c or d, or `yield`; then > -1 and < 1
   Channel<1> poisson = 0.3;
+  Channel<1> goal = 0;  ///< g >= 0, pulls back to rest; 0 with Reference::None
 
   friend bool operator==(const MaterialChannels&, const MaterialChannels&) = default;
 };
 
 /// The channels of the material that a map may change.
-enum class MapChannel { Density, Damping, B, C, D, Yield, Hardening };
+enum class MapChannel { Density, Damping, B, C, D, Yield, Hardening, Goal };
 
 /// How a channel of the material differs over a surface: at each node its value is multiplied by
 /// low + (high - low) m. m is that of a picture at the node's (u,v), from black 0 to white 1; of a

@@ -94,8 +94,8 @@ class HashedValues {
     add(surface.unit);
   }
   void add(const NodeFactors& factors) {
-    const auto& [density, damping, b, c, d, yield, hardening] = factors;
-    for (const auto* of_nodes : {&density, &damping, &b, &c, &d, &yield, &hardening})
+    const auto& [density, damping, b, c, d, yield, hardening, goal] = factors;
+    for (const auto* of_nodes : {&density, &damping, &b, &c, &d, &yield, &hardening, &goal})
       add_bytes(*of_nodes);
   }
   void add(const PlasticLaw& law) {
@@ -153,10 +153,10 @@ class HashedValues {
     if (falloff_curve) add(falloff_curve->keys());
   }
   void add(const BodyInputs& inputs) {
-    const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, law,
+    const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, goal,
                  frame_length, dt, forces, shape, selectors] = inputs;
-    add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, frame_length, dt,
-            forces, shape, selectors);
+    add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, goal,
+            frame_length, dt, forces, shape, selectors);
   }
 
   Hash hash() const { return hash_of(std::string_view(bytes_)); }

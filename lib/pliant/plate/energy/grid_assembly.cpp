@@ -74,6 +74,21 @@ PlateWeights GridAssembly::weights() const {
   return weights;
 }
 
+Eigen::VectorXd GridAssembly::goals() const {
+  if (system_.goal == 0) return {};
+  Eigen::VectorXd goals(size());
+  const PlateEnergy energy(system_);
+  Eigen::Index unknown = 0;
+  system_.outline.for_each_run([&](const Outline::Run& run) {
+    for (int i = run.i0; i <= run.i1; ++i) {
+      const double factor =
+          system_.factors ? factor_at(system_.factors->goal, energy.grid().node(i, run.j)) : 1;
+      goals[unknown++] = system_.goal * (energy.share(i, run.j) * factor);
+    }
+  });
+  return goals;
+}
+
 std::size_t GridAssembly::most_entries() const {
   return StencilTable<double>::steps.size() * static_cast<std::size_t>(size());
 }
@@ -136,7 +151,9 @@ Field GridAssembly::residual(const Eigen::VectorXd& shifts, const Field& x, cons
 bool GridAssembly::loses_digits(double shift) const {
   constexpr double most = 1e7;
   PlateSystem system = system_;
-  system.shift = shift;
+  // A goal with a map may be 0 somewhere.
+  const bool is_everywhere = !(system_.factors && !system_.factors->goal.empty());
+  system.shift = is_everywhere ? shift + system_.goal : shift;
   return is_stencil() && !(estimate_condition(system) < most);
 }
 

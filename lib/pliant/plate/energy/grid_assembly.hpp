@@ -21,6 +21,7 @@ class GridAssembly final : public PlateAssembly, private DifferenceResidual {
 
   int size() const override { return system_.outline.unknown_count(); }
   PlateWeights weights() const override;
+  Eigen::VectorXd goals() const override;
   std::size_t most_entries() const override;
   Result<Entries<double>> entries() const override;
   Result<Entries<long double>> precise_entries() const override;

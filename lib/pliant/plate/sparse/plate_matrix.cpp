@@ -28,7 +28,7 @@ Result<void> PlateMatrix::take(std::size_t bytes) {
 
 std::size_t PlateMatrix::kept_bytes() const {
   return static_cast<std::size_t>(stiffness_.nonZeros()) * (sizeof(double) + sizeof(int)) +
-         places_.size() * sizeof(int);
+         places_.size() * sizeof(int) + static_cast<std::size_t>(goals_.size()) * sizeof(double);
 }
 
 // Sums entries in the order of the assembly.
@@ -75,14 +75,21 @@ Result<void> PlateMatrix::assemble(const PlateAssembly& assembly) {
                    is_same(inner, stiffness_.innerIndexPtr(), stiffness_.nonZeros());
   stiffness_ = Eigen::Map<const SparseMatrix>(size, size, static_cast<Eigen::Index>(inner.size()),
                                               starts.data(), inner.data(), sums.data());
+  goals_ = assembly.goals();
+  for (Eigen::Index k = 0; k < goals_.size(); ++k)
+    stiffness_.valuePtr()[place_on_diagonal(k)] += goals_[k];
   return take(kept_bytes());
+}
+
+// It is the last of each column.
+std::size_t PlateMatrix::place_on_diagonal(Eigen::Index column) const {
+  return static_cast<std::size_t>(stiffness_.outerIndexPtr()[column + 1]) - 1;
 }
 
 SparseMatrix PlateMatrix::shifted(const Eigen::VectorXd& shifts) const {
   SparseMatrix sum = stiffness_;
-  // The diagonal is the last of each column.
   for (Eigen::Index k = 0; k < shifts.size(); ++k)
-    sum.valuePtr()[sum.outerIndexPtr()[k + 1] - 1] += shifts[k];
+    sum.valuePtr()[place_on_diagonal(k)] += shifts[k];
   return sum;
 }
 
@@ -98,6 +105,7 @@ Result<void> PlateMatrix::open() {
     if (!made) return fail(made.error());
     PLIANT_EXPECTS(made->values.size() == places_.size());
     for (std::size_t k = 0; k < places_.size(); ++k) sums[places_[k]] += made->values[k];
+    for (Eigen::Index k = 0; k < goals_.size(); ++k) sums[place_on_diagonal(k)] += goals_[k];
   }
   const auto size = static_cast<std::size_t>(stiffness_.cols());
   const int* const starts = stiffness_.outerIndexPtr();
@@ -133,7 +141,9 @@ void PlateMatrix::close() {
 }
 
 Field PlateMatrix::residual(const Eigen::VectorXd& shifts, const Field& x, const Field& f) const {
-  if (const auto* own = assembly_->differences()) return own->residual(shifts, x, f);
+  if (const auto* own = assembly_->differences()) {
+    return own->residual(goals_.size() > 0 ? Eigen::VectorXd(shifts + goals_) : shifts, x, f);
+  }
   PLIANT_EXPECTS(static_cast<Eigen::Index>(precise_.starts.size()) == x.rows() + 1);
   const double* const of_x = x.col(0).data();
   const double* const of_y = x.col(1).data();

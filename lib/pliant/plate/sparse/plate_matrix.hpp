@@ -67,6 +67,10 @@ class PlateAssembly {
   virtual Result<Entries<double>> entries() const = 0;
   virtual Result<Entries<long double>> precise_entries() const = 0;
 
+  /// What a goal adds to the diagonal of K at the unknowns that move; empty: nothing. `entries` and
+  /// `differences` do not contain it.
+  virtual Eigen::VectorXd goals() const { return {}; }
+
   /// Null: there are entries only.
   virtual const DifferenceResidual* differences() const { return nullptr; }
 
@@ -119,12 +123,14 @@ class PlateMatrix {
 
   Result<void> take(std::size_t bytes);
   std::size_t kept_bytes() const;
+  std::size_t place_on_diagonal(Eigen::Index column) const;
 
   RunContext context_;
   MemoryShare share_;
   const PlateAssembly* assembly_ = nullptr;
   SparseMatrix stiffness_;
   std::vector<int> places_;  // of the assembly's entries in `stiffness_`
+  Eigen::VectorXd goals_;    // the assembly's, in `stiffness_`
   bool keeps_pattern_ = false;
   Precise precise_;
 };

@@ -13,8 +13,8 @@
 namespace pliant {
 
 /// A plate on its unknowns, of a grid or of triangles: rho M w'' + eta G w' + K w = f, with the
-/// matrix K and the diagonals M and G of an assembly. Unknowns without a mass, the last ones,
-/// follow at once. Fields of forces and solutions are #unknowns x 3. Internal to plate.
+/// matrix K, goal included, and the diagonals M and G of an assembly. Unknowns without a mass, the
+/// last ones, follow at once. Fields of forces and solutions are #unknowns x 3. Internal to plate.
 class SparsePlate {
  public:
   /// `choice` is one of the factors.

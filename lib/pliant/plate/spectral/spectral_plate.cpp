@@ -267,13 +267,13 @@ Result<void> SpectralPlate::prepare(const PlateSystem& system) try {
   return fail(no_memory_to_solve(unknown_count(system.outline), "does not fit in memory"));
 }
 
-// 1/D with D the eigenvalues of the simply supported plate. Eq. (22). Returns whether all are
-// positive.
+// 1/D with D the eigenvalues of the simply supported plate, goal included. Eq. (22). Returns
+// whether all are positive.
 bool SpectralPlate::fill_diagonal(const PlateSystem& system, int k) {
   const Parity& parity = parities_[k];
   const Grid& grid = system.outline.grid();
   const Stiffness& stiffness = system.stiffness;
-  const double shift = system.shift;
+  const double shift = system.shift + system.goal;
   const double h_along = is_along_u_ ? grid.hu : grid.hv;
   const double h_across = is_along_u_ ? grid.hv : grid.hu;
   const double b = is_along_u_ ? stiffness.b : stiffness.d;

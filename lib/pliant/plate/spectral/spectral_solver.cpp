@@ -225,7 +225,9 @@ class SpectralSolver final : public PlateSolver {
                  last_load_);
     const long first = grid.node(1, 1);
     const long count = grid.node_count();
-    auto done = motion_.advance({problem.outline, problem.stiffness, 0}, problem.dynamics, steps,
+    PlateSystem system{problem.outline, problem.stiffness};
+    system.goal = problem.goal;
+    auto done = motion_.advance(system, problem.dynamics, steps,
                                 {first_load_.data() + first, grid.columns, count},
                                 {last_load_.data() + first, grid.columns, count},
                                 {state.displacement.data() + first, grid.columns, count},

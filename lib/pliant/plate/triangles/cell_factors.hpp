@@ -10,13 +10,14 @@ namespace pliant {
 /// Factors by which the material of a plate of triangles differs from place to place; an empty one
 /// is 1 everywhere. docs/model.md, "Maps".
 struct CellFactors {
-  std::vector<double> density, damping;  ///< #masses
-  std::vector<double> b, c, d;           ///< #cells; equal for those of one triangle
-  std::vector<double> yield, hardening;  ///< of `TrianglePlate::triangles`
+  std::vector<double> density, damping, goal;  ///< #masses
+  std::vector<double> b, c, d;                 ///< #cells; equal for those of one triangle
+  std::vector<double> yield, hardening;        ///< of `TrianglePlate::triangles`
 
   /// Whether an elastic plate has some of them.
   bool are_elastic() const {
-    return !density.empty() || !damping.empty() || !b.empty() || !c.empty() || !d.empty();
+    return !density.empty() || !damping.empty() || !goal.empty() || !b.empty() || !c.empty() ||
+           !d.empty();
   }
 
   /// The form of a cell for that of the whole plate.

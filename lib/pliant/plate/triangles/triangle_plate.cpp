@@ -46,6 +46,14 @@ PlateWeights TrianglePlate::weights() const {
   return weights;
 }
 
+Eigen::VectorXd TrianglePlate::goals() const {
+  if (goal_ == 0) return {};
+  Eigen::VectorXd goals(static_cast<Eigen::Index>(masses_.size()));
+  for (int k = 0; k < static_cast<int>(masses_.size()); ++k)
+    goals[k] = goal_ * (masses_[k] * (factors_ ? factor_at(factors_->goal, k) : 1));
+  return goals;
+}
+
 template <class Real>
 Result<Entries<Real>> TrianglePlate::entries_of() const {
   constexpr std::size_t parts_of_entry = 32;
@@ -66,16 +74,17 @@ Result<Entries<Real>> TrianglePlate::entries_of() const {
   return entries;
 }
 
-Result<void> TrianglePlate::bend(const Bending& bending) {
-  if (is_bent_ && bending_ == bending) return {};
+Result<void> TrianglePlate::bend(const Bending& bending, double goal) {
+  if (is_bent_ && bending_ == bending && goal_ == goal) return {};
   bending_ = bending;
+  goal_ = goal;
   auto assembled = plate_.assemble(*this);
   is_bent_ = assembled.has_value();
   return assembled;
 }
 
-Result<SparseMatrix> TrianglePlate::stiffness(const Bending& bending) {
-  if (auto bent = bend(bending); !bent) return fail(bent.error());
+Result<SparseMatrix> TrianglePlate::stiffness(const Bending& bending, double goal) {
+  if (auto bent = bend(bending, goal); !bent) return fail(bent.error());
   return plate_.stiffness();
 }
 
@@ -115,8 +124,8 @@ Result<Field> TrianglePlate::reduced(const Field& forces) const {
   return result;
 }
 
-Result<void> TrianglePlate::prepare(const Bending& bending, double shift) {
-  if (auto bent = bend(bending); !bent) return bent;
+Result<void> TrianglePlate::prepare(const Bending& bending, double shift, double goal) {
+  if (auto bent = bend(bending, goal); !bent) return bent;
   return plate_.prepare(shift, 0);
 }
 
@@ -164,7 +173,7 @@ Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const 
   PLIANT_EXPECTS(state.displacement.rows() == cells_.point_count &&
                  state.velocity.rows() == points && problem.load.rows() == points);
   StageTimer set_up(context_.profile, Stage::SetUp);
-  if (auto bent = bend(problem.bending); !bent) return fail(bent.error());
+  if (auto bent = bend(problem.bending, problem.goal); !bent) return fail(bent.error());
   if (auto ready = plate_.prepare(problem.dynamics, steps); !ready) return fail(ready.error());
   if (problem.law) {
     if (auto ready = prepare_plasticity(); !ready) return fail(ready.error());

@@ -24,9 +24,10 @@ namespace pliant {
 /// the law's yield has the unit that it has on a grid [length/uv^2].
 struct TriangleProblem : PlateInterval {
   Bending bending;
+  double goal = 0;  ///< as in `PlateSystem`
 };
 
-/// A plate of Morley triangles: M (rho w'' + eta w') + K w = f, where K is the Hessian of the
+/// A plate of Morley triangles: M (rho w'' + eta w' + g w) + K w = f, where K is the Hessian of the
 /// cells' bending energy and M has the masses of the first points on its diagonal. Slopes, and
 /// points without a mass, follow at once. docs/model.md, "Surfaces". Not thread-safe.
 class TrianglePlate : private PlateAssembly {
@@ -39,9 +40,9 @@ class TrianglePlate : private PlateAssembly {
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
                 const RunContext& context, std::shared_ptr<const CellFactors> factors = {});
 
-  /// Prepares to solve K + shift M, for vibrations. Reuse: does nothing if both are those of the
-  /// last call. Errors: SolverFailed if the matrix is not positive definite; OutOfMemory.
-  Result<void> prepare(const Bending& bending, double shift);
+  /// Prepares to solve K + (goal + shift) M, for vibrations. Reuse: does nothing if all are those
+  /// of the last call. Errors: SolverFailed if the matrix is not positive definite; OutOfMemory.
+  Result<void> prepare(const Bending& bending, double shift, double goal = 0);
 
   /// Solves for forces on the points with a mass (#masses x 3) on a plate whose held points and
   /// slopes are 0; the displacements there. Requires: `prepare` succeeded. Errors: OutOfMemory.
@@ -53,9 +54,9 @@ class TrianglePlate : private PlateAssembly {
   Result<PlateState> advance(const TriangleProblem& problem, const TimeSteps& steps,
                              PlateState state);
 
-  /// K: the upper triangle of what is factored, without unknowns that belong to one block of cells.
-  /// Errors: OutOfMemory; Interrupted.
-  Result<SparseMatrix> stiffness(const Bending& bending);
+  /// K + goal M: the upper triangle of what is factored, without unknowns that belong to one block
+  /// of cells. Errors: OutOfMemory; Interrupted.
+  Result<SparseMatrix> stiffness(const Bending& bending, double goal = 0);
 
   const TriangleCells& cells() const { return cells_; }
 
@@ -84,7 +85,7 @@ class TrianglePlate : private PlateAssembly {
     PlasticTriangles triangles;
   };
 
-  Result<void> bend(const Bending& bending);
+  Result<void> bend(const Bending& bending, double goal);
   Result<Field> reduced(const Field& forces) const;
   Field held_forces(const EdgeTangents& slopes, const Field& displacement) const;
   Result<void> prepare_plasticity();
@@ -93,6 +94,7 @@ class TrianglePlate : private PlateAssembly {
 
   int size() const override { return reduced_.count; }
   PlateWeights weights() const override;
+  Eigen::VectorXd goals() const override;
   std::size_t most_entries() const override { return reduced_.pairs; }
   Result<Entries<double>> entries() const override { return entries_of<double>(); }
   Result<Entries<long double>> precise_entries() const override {
@@ -109,6 +111,7 @@ class TrianglePlate : private PlateAssembly {
   SolverChoice solver_;
   ReducedUnknowns reduced_;  // those of the matrix
   Bending bending_;          // of the matrix
+  double goal_ = 0;          // likewise
   bool is_bent_ = false;     // whether there is a matrix
   SparsePlate plate_;
   std::optional<Plasticity> plasticity_;

@@ -45,8 +45,9 @@ struct TrianglePatch {
   std::vector<double> masses;  ///< #free_nodes: its share of the area [length^2]
 
   bool may_float = false;  ///< whether it moves if nothing is held
+  bool has_goal = false;   ///< a goal holds it where nothing else does
 
-  bool is_held() const { return cells.free_points < cells.point_count; }
+  bool is_held() const { return has_goal || cells.free_points < cells.point_count; }
 
   /// Whether it is solved.
   bool moves() const { return free_nodes > 0 && (may_float || is_held()); }

@@ -77,7 +77,8 @@ class ChannelChecker {
       check_poisson(surface);
     }
     if (kept_.contains("hardening")) check_hardening(surface);
-    if (kept_.contains("density") && kept_.contains("damping")) check_is_held(surface);
+    if (kept_.contains("density") && kept_.contains("damping") && kept_.contains("goal"))
+      check_is_held(surface);
     check_channels(surface, surface.tangents);
     check_channels(surface, surface.solver);
     if (kept_.contains("dt") && kept_.contains("timeScale")) check_steps(surface);
@@ -103,6 +104,12 @@ class ChannelChecker {
     if constexpr (std::is_same_v<Owner, Surface>) {
       if (attribute.name == "scale") return complaint_of_scale(value);
       if (attribute.unit == edge_slope) return complaint_of_tangent(owner, attribute.name, value);
+      const bool has_rest = owner.solver.reference == Reference::Rest;
+      if (attribute.name == "goal" && !has_rest && value[0] != 0)
+        return fmt::format(
+            "is {}, but must be 0 with reference=\"none\", which has no shape at rest to pull back "
+            "to",
+            value[0]);
     }
     if (const auto rule = attribute.range.broken_rule(value))
       return fmt::format("is {}, but {}", spelled<D>(value), *rule);
@@ -239,8 +246,8 @@ class ChannelChecker {
     }
   }
 
-  // A static surface that is solved as a whole needs edges that hold it: SPEC 9, "Whole-body
-  // motion".
+  // A static surface that is solved as a whole needs edges or a goal that hold it: SPEC 9,
+  // "Whole-body motion".
   void check_is_held(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
     if (solver.region != SolvedRegion::All || solver.edges.hold()) return;
@@ -276,17 +283,18 @@ class ChannelChecker {
 }  // namespace
 
 std::optional<StaticFrame> static_frame_of(const Scene& scene, const Surface& surface,
-                                           const FrameSpan& frames) {
+                                           const FrameSpan& frames, bool has_goal) {
   if (!surface.enabled || surface.is_driven()) return {};
   const MaterialChannels& material = surface.material;
   const Channel<1>& density = material.density;
   const Channel<1>& damping = material.damping_ratio ? density : material.damping;
-  const bool is_animated =
-      density.is_animated() || damping.is_animated() || surface.solver.time_scale.is_animated();
+  const bool is_animated = density.is_animated() || damping.is_animated() ||
+                           material.goal.is_animated() || surface.solver.time_scale.is_animated();
   const int first = std::max(frames.first, first_solved_frame(scene, surface));
   const int last = is_animated ? frames.last : std::min(first, frames.last);
   for (int frame = first; frame <= last; ++frame) {
     if (density.at(frame)[0] != 0 || damping.at(frame)[0] != 0) continue;
+    if ((material.goal.at(frame)[0] != 0) != has_goal) continue;
     if (frame_length(scene, surface, frame) != 0) return StaticFrame{frame, is_animated};
   }
   return {};
@@ -297,13 +305,16 @@ Error not_held(const Scene& scene, const Surface& surface, const StaticFrame& at
   const std::string when = at.is_animated ? fmt::format(" at frame {}", at.frame) : "";
   const std::string what = part.empty() ? "a static surface" : std::string(part);
   const bool is_grid = part.empty();
+  const bool has_goal = surface.material.goal.at(at.frame)[0] != 0;
   return scene.origin.located(
       {.code = ErrorCode::InvalidInput,
-       .message = fmt::format(
-           "{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
-           "density or a damping{}",
-           surface.name, when, what, is_grid ? ", or a clamped edge or two pinned ones" : "")},
-      scene.origin.last_of(surface.name, {"density", "damping"}));
+       .message =
+           fmt::format("{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
+                       "density or a damping, {}{}",
+                       surface.name, when, what,
+                       has_goal ? "or a goal at nodes that are not in one line" : "or a goal",
+                       is_grid ? ", or a clamped edge or two pinned ones" : "")},
+      scene.origin.last_of(surface.name, {"density", "damping", "goal"}));
 }
 
 std::vector<Error> check_channels(const Scene& scene, const ChannelFilter& is_checked,

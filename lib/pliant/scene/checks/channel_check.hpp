@@ -34,10 +34,10 @@ struct StaticFrame {
   bool is_animated = false;  ///< other frames may differ
 };
 
-/// The first frame of some in which a surface is solved as what is static; none: there is no such
-/// frame, or it is not solved.
+/// The first frame of some in which a surface is solved as what is static, with a goal or without
+/// one; none: there is no such frame, or it is not solved.
 std::optional<StaticFrame> static_frame_of(const Scene& scene, const Surface& surface,
-                                           const FrameSpan& frames);
+                                           const FrameSpan& frames, bool has_goal = false);
 
 /// The error that nothing holds a static surface, or a part of it, such as "the piece with vertex
 /// 3"; empty: all of a grid.

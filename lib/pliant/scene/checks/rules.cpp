@@ -257,6 +257,11 @@ class WholeChecker {
              "what yields in a round does not come back to where it began");
   }
 
+  static bool has_goal(const Surface& surface) {
+    const Channel<1>& goal = surface.material.goal;
+    return goal.is_animated() || goal.at(0)[0] != 0;
+  }
+
   void check_maps(const Surface& surface) {
     for (auto map = surface.maps.begin(); map != surface.maps.end(); ++map) {
       const std::string channel = name_of(map->channel);
@@ -296,8 +301,12 @@ class WholeChecker {
                            fmt::format("{}: the map has no effect: {}.yield is not given, so that "
                                        "nothing yields",
                                        name, surface.name));
-      const bool is_stiffness =
-          !is_plastic && map->channel != MapChannel::Density && map->channel != MapChannel::Damping;
+      if (map->channel == MapChannel::Goal && !has_goal(surface) && is_sound(surface.name, "goal"))
+        findings_.add_note(
+            scene_.origin.at(name, ""),
+            fmt::format("{}: the map has no effect: {}.goal is 0", name, surface.name));
+      const bool is_stiffness = map->channel == MapChannel::B || map->channel == MapChannel::C ||
+                                map->channel == MapChannel::D;
       if (is_stiffness && surface.solver.combine == Combine::Union)
         findings_.add_problem(
             scene_.origin.last_of(surface.name, {"combine", channel}),

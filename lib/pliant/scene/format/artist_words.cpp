@@ -31,6 +31,7 @@ constexpr ArtistWords known_words[] = {
     {"material", "zeta dampratio ratio", "dampingRatio"},
     {"material", "plasticity plastic yieldstress yieldstrength threshold", "yield"},
     {"material", "nu poissonratio poissonsratio", "poisson"},
+    {"material", "goalstrength goalspring foundation winkler shapematching retain", "goal"},
     {"surface", "stiffness elasticity rigidity bend bending", "b@material c@material d@material"},
     {"surface", "mass weight density", "density@material"},
     {"surface", "drag friction viscosity damping", "damping@material"},

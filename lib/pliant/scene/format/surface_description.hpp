@@ -20,8 +20,8 @@ inline constexpr std::string_view measure_words[] = {"current", "rest"};
 
 inline constexpr std::string_view integrator_words[] = {"backwardEuler", "newmark", "exact"};
 inline constexpr std::string_view region_words[] = {"forces", "all"};
-inline constexpr std::string_view map_channel_words[] = {"density", "damping", "b",        "c",
-                                                         "d",       "yield",   "hardening"};
+inline constexpr std::string_view map_channel_words[] = {"density", "damping", "b",         "c",
+                                                         "d",       "yield",   "hardening", "goal"};
 
 // What an element says that is stored in several members of a thing; `Of` is the thing, const or
 // not.
@@ -137,6 +137,12 @@ struct Description<MaterialChannels> {
                       "−1 and 1 there",
                   .unit = "1"},
         of.poisson...);
+    row(Attribute{.name = "goal",
+                  .meaning = "g: how strongly each node is pulled back to rest, whatever its "
+                             "neighbours do, see below",
+                  .unit = "1/uv⁴",
+                  .range = not_negative},
+        of.goal...);
   }
 };
 
