@@ -99,6 +99,15 @@ Result<StarterFacts> fit_radii(SceneDocument& scene, const StarterSource& source
   }
 }
 
+// Pulls back to rest what has no border to hold it, about as strongly as the starter's own mesh
+// resists its slowest vibration.
+Result<StarterFacts> hold_by_goal(SceneDocument& scene, const StarterSource& source) {
+  const std::string surface = scene.scene().surfaces.front().name;
+  if (auto changed = scene.apply({edit::Set{surface + ".goal", "400"}}); !changed)
+    return fail(changed.error());
+  return look_at(scene.text(), source);
+}
+
 }  // namespace
 
 Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
@@ -119,6 +128,8 @@ Result<StarterFacts> use_own_mesh(SceneDocument& scene, const OwnMesh& mesh,
   changed = scene.apply(fitting);
   if (!changed) return fail(changed.error());
   auto facts = fit_radii(scene, source);
+  if (facts && facts->is_by_inertia && facts->is_solvable && !facts->is_held)
+    facts = hold_by_goal(scene, source);
   if (!facts) return facts;
   if (auto moves = check_moves(*facts); !moves) return fail(moves.error());
   changed = scene.apply(
