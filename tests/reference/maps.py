@@ -73,6 +73,8 @@ def read_map(element, path_of, uvs):
     path = path_of(element.get("file"))
     if path.endswith(".npy"):
         values = np.load(path).T
+        if uvs.ndim == 2:  # a sheet of triangles: along u first
+            values = values.T.ravel()
         assert values.shape == uvs.shape[:-1]
     else:
         values = sampled(read_png(path), uvs)

@@ -151,7 +151,8 @@ def lattice_index(values):
 
 
 def flat_grid(element):
-    """A <grid>: vertex j*columns + i at node (i, j), in the xz-plane, u with x and v with z."""
+    """A <grid>: vertex j*columns + i at node (i, j), in the xz-plane, u with x and v with z. With
+    uv="surface" its faces are read as those of a mesh."""
     columns, rows = int(element.get("columns")), int(element.get("rows"))
     width, depth = float(element.get("width", "1")), float(element.get("depth", "1"))
     vertices, u, v = [], [], []
@@ -162,9 +163,16 @@ def flat_grid(element):
             vertices.append((x, 0.0, z))
             u.append(i / (columns - 1))
             v.append(j / (rows - 1))
-    faces = [[j * columns + i, (j + 1) * columns + i, (j + 1) * columns + i + 1, j * columns + i + 1]
-             for j in range(rows - 1) for i in range(columns - 1)]
-    return Grid(np.array(vertices), u, v, faces)
+    faces = []
+    for first in (j * columns + i for j in range(rows - 1) for i in range(columns - 1)):
+        quad = [first, first + columns, first + columns + 1, first + 1]
+        is_split = element.get("faces", "quads") == "triangles"
+        faces += [quad[:3], [quad[0], quad[2], quad[3]]] if is_split else [quad]
+    if element.get("uv", "grid") != "surface":
+        assert not {"unit", "axis", "border"} & set(element.keys())
+        return Grid(np.array(vertices), u, v, faces)
+    corners = [[(k, np.array([u[k], v[k]])) for k in face] for face in faces]
+    return triangle_mesh(element, np.array(vertices), corners, [width, depth])
 
 
 def read_obj(path):
@@ -180,11 +188,17 @@ def read_obj(path):
 def read_surface(element, folder):
     """A <mesh> that is read as a surface of triangles (SPEC 1)."""
     assert set(element.keys()) <= {"file", "uv", "unit", "axis", "border", "weld"}
+    vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
+    return triangle_mesh(element, vertices, faces)
+
+
+def triangle_mesh(element, vertices, faces, unit=None):
+    """A surface of triangles as the attributes of its element say; without a unit this one."""
     read = {name: numbers(element.get(name)) for name in ("unit", "axis", "weld")
             if name in element.keys()}
     if "weld" in read:
         read["weld"] = float(read["weld"][0])
-    vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
+    read.setdefault("unit", unit)
     mesh = TriangleMesh(vertices, faces, border=element.get("border", "clamped"), **read)
     mesh.uvs = node_uvs(mesh.node_of, faces, (len(mesh.rest),))
     return mesh

@@ -21,14 +21,15 @@ enum class Border {
   Free,     ///< it moves
 };
 
-/// How a mesh is read. `wrap` is of a grid; all but `uv` are of a surface otherwise.
+/// How a mesh is read. `wrap` is of a grid; all but `uv` are of a surface otherwise. A sheet is a
+/// surface only by `uv`, and has neither `wrap` nor `weld`.
 struct MeshReading {
   UvReading uv = UvReading::Auto;
 
   Wrap wrap = Wrap::None;  ///< the closed directions of its grid
 
   /// The lengths that count as 1 along u and along v [length/uv], > 0; none: the root of the
-  /// surface's area, for both.
+  /// surface's area, for both; of a sheet its width and depth.
   std::optional<std::array<double, 2>> unit = {};
 
   /// The direction that u follows, projected into each triangle, not 0; none: that of the UVs.

@@ -57,6 +57,11 @@ class MapReader {
   }
 
   Result<std::vector<double>> of_npy(const std::string& bytes, const std::string& file) const {
+    if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) {
+      const auto values = parse_npy_grid(bytes, file, sheet->columns, sheet->rows, should_stop_);
+      if (!values || shape_.grid) return values;
+      return of_vertices(*values, "the map");
+    }
     if (!shape_.grid)
       return fail(ErrorCode::InvalidInput,
                   "a .npy has a number for each node of a grid, but the mesh is read as a surface",

@@ -11,6 +11,23 @@ std::size_t bytes_of_mesh(std::size_t vertices, std::size_t uvs, std::size_t fac
   return vertices * bytes_of_vector + uvs * bytes_of_uv + (faces + 2 * corners) * sizeof(int);
 }
 
+std::size_t corners_of(const GridSheet& sheet) {
+  const std::size_t quads =
+      (static_cast<std::size_t>(sheet.columns) - 1) * (static_cast<std::size_t>(sheet.rows) - 1);
+  return (sheet.triangles ? 6 : 4) * quads;
+}
+
+std::size_t bytes_as_surface(std::size_t corners, std::size_t vertices) {
+  // A corner: its node, edge and origin, twice while edges are numbered, its face at its node, and,
+  // as a triangle of a face, what is laid flat, and two cells of a region with their points,
+  // slopes, and sides.
+  constexpr std::size_t bytes_of_corner = 40 + 60 + 8 + 32 + 2 * 250;
+  // A vertex: in the trees for welding and for selecting, its rest position twice, its place in the
+  // region.
+  constexpr std::size_t bytes_of_vertex = 300;
+  return corners * bytes_of_corner + vertices * bytes_of_vertex;
+}
+
 }  // namespace
 
 std::size_t bytes_of(const Mesh& mesh) {
@@ -25,7 +42,7 @@ std::size_t bytes_of(const GridSheet& sheet) {
   const auto rows = static_cast<std::size_t>(sheet.rows);
   const std::size_t quads = (columns - 1) * (rows - 1);
   return bytes_of_mesh(columns * rows, columns * rows, (sheet.triangles ? 2 : 1) * quads,
-                       (sheet.triangles ? 6 : 4) * quads);
+                       corners_of(sheet));
 }
 
 std::size_t bytes_of(const WrittenSize& size) {
@@ -58,17 +75,15 @@ std::size_t bytes_of_faces(const Mesh& mesh) {
 }
 
 std::size_t bytes_as_surface(const Mesh& mesh) {
-  // A corner: its node, edge and origin, twice while edges are numbered, its face at its node, and,
-  // as a triangle of a face, what is laid flat, and two cells of a region with their points,
-  // slopes, and sides.
-  constexpr std::size_t bytes_of_corner = 40 + 60 + 8 + 32 + 2 * 250;
-  // A vertex: in the trees for welding and for selecting, its rest position twice, its place in the
-  // region.
-  constexpr std::size_t bytes_of_vertex = 300;
-  return mesh.corner_vertices.size() * bytes_of_corner +
-         static_cast<std::size_t>(mesh.vertex_count()) * bytes_of_vertex;
+  return bytes_as_surface(mesh.corner_vertices.size(),
+                          static_cast<std::size_t>(mesh.vertex_count()));
 }
 
+std::size_t bytes_as_surface(const GridSheet& sheet) {
+  const auto columns = static_cast<std::size_t>(sheet.columns);
+  const auto rows = static_cast<std::size_t>(sheet.rows);
+  return bytes_as_surface(corners_of(sheet), columns * rows);
+}
 std::size_t bytes_to_run(std::size_t vertex_count) {
   // Vectors per node: rest in the mapping and in the body; position and velocity, present and new;
   // load, displacement and velocity of the plate, twice as many in a solver with sparse factors;

@@ -28,6 +28,7 @@ std::size_t bytes_to_run(std::size_t vertex_count);
 /// What reading a mesh as a surface of triangles, and cutting its regions, takes besides. An upper
 /// bound. [bytes]
 std::size_t bytes_as_surface(const Mesh& mesh);
+std::size_t bytes_as_surface(const GridSheet& sheet);
 
 /// The faces of the nodes of a grid. [bytes]
 std::size_t bytes_of_faces(const Mesh& mesh);

@@ -29,11 +29,20 @@
 namespace pliant {
 namespace {
 
+// Whether it is a sheet that no triangles are made of: a grid, or driven.
+bool is_plain_sheet(const Surface& surface) {
+  return std::holds_alternative<GridSheet>(surface.shape) &&
+         (surface.reading.uv != UvReading::Surface || surface.is_driven());
+}
+
 // The memory for making a shape, as far as it is known in advance.
 struct BytesToMake {
+  const Surface& surface;
+
   std::size_t operator()(const GridSheet& sheet) const {
     const auto vertex_count = static_cast<std::size_t>(sheet.columns) * sheet.rows;
-    return bytes_of(sheet) + bytes_to_run(vertex_count);
+    return bytes_of(sheet) + bytes_to_run(vertex_count) +
+           (is_plain_sheet(surface) ? 0 : bytes_as_surface(sheet));
   }
   std::size_t operator()(const MeshFile&) const { return 0; }  // known when it is open
   std::size_t operator()(const Mesh& mesh) const { return bytes_of(mesh); }
@@ -95,7 +104,11 @@ GridMapping mapping_of(const GridSheet& sheet, const Mesh& mesh) {
 }
 
 Result<RestShape> on_surface(const Surface& surface, Mesh mesh, const StopRequest& should_stop) {
-  auto triangles = make_surface(mesh, surface.reading, should_stop);
+  MeshReading reading = surface.reading;
+  // So the numbers of the sheet's grid carry over.
+  if (const auto* const sheet = std::get_if<GridSheet>(&surface.shape); sheet && !reading.unit)
+    reading.unit = {sheet->width, sheet->depth};
+  auto triangles = make_surface(mesh, reading, should_stop);
   if (!triangles) return fail(triangles.error());
   RestShape shape{.name = surface.name,
                   .mesh = std::move(mesh),
@@ -150,11 +163,11 @@ class ShapeMaker {
     return ReservedShape{*std::move(shape), std::move(memory_)};
   }
 
-  // Only reserves what a sheet or a net needs, which then can be made.
+  // Only reserves what the grid of a sheet or a net needs, which then can be made.
   Result<CheckedShape> check() {
-    if (surface_.maps.empty() && (std::holds_alternative<GridSheet>(surface_.shape) ||
-                                  std::holds_alternative<NurbsNet>(surface_.shape))) {
-      if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
+    if (surface_.maps.empty() &&
+        (is_plain_sheet(surface_) || std::holds_alternative<NurbsNet>(surface_.shape))) {
+      if (auto taken = take_bytes(std::visit(BytesToMake{surface_}, surface_.shape)); !taken)
         return fail(taken.error());
       return CheckedShape{std::move(memory_)};
     }
@@ -166,7 +179,7 @@ class ShapeMaker {
 
  private:
   Result<RestShape> make_net(const NurbsNet& net) {
-    if (auto taken = take_bytes(BytesToMake{}(net)); !taken) return fail(taken.error());
+    if (auto taken = take_bytes(BytesToMake{surface_}(net)); !taken) return fail(taken.error());
     auto made = make_nurbs(net, context_.should_stop);
     if (!made) return fail(made.error());
     if (surface_.is_driven()) return mesh_only(std::move(made->mesh));
@@ -184,10 +197,9 @@ class ShapeMaker {
   Result<RestShape> make_of_mesh() {
     auto mesh = make_mesh_of_shape();
     if (!mesh) return fail(mesh.error());
-    const bool is_sheet = std::holds_alternative<GridSheet>(surface_.shape);
     const std::size_t bytes = bytes_of(*mesh) +
                               bytes_to_run(static_cast<std::size_t>(mesh->vertex_count())) +
-                              (is_sheet ? 0 : bytes_as_surface(*mesh));
+                              (is_plain_sheet(surface_) ? 0 : bytes_as_surface(*mesh));
     if (auto taken = take_bytes(bytes); !taken) return fail(taken.error());
     if (surface_.is_driven() && !surface_.subdivision) return mesh_only(*std::move(mesh));
     auto shape = read_nodes(surface_, *std::move(mesh), context_.should_stop);
@@ -203,7 +215,7 @@ class ShapeMaker {
 
   Result<Mesh> make_mesh_of_shape() {
     if (const auto* const file = std::get_if<MeshFile>(&surface_.shape)) return read(*file);
-    if (auto taken = take_bytes(std::visit(BytesToMake{}, surface_.shape)); !taken)
+    if (auto taken = take_bytes(std::visit(BytesToMake{surface_}, surface_.shape)); !taken)
       return fail(taken.error());
     if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape))
       return make_mesh(*sheet, context_.should_stop);
@@ -279,10 +291,12 @@ class ShapeMaker {
   Result<void> check_as_surface(const RestShape& shape) const {
     if (shape.grid || surface_.is_driven()) return {};
     const auto refuse = [&](const char* attribute, std::string_view reason) {
+      const bool is_sheet = std::holds_alternative<GridSheet>(surface_.shape);
       return fail(origin_.located(
           {.code = ErrorCode::InvalidInput,
-           .message = fmt::format("{}: {}, but the mesh is read as a surface{}", title_of(surface_),
-                                  reason, shape.note.empty() ? "" : ", since it is no even grid")},
+           .message = fmt::format("{}: {}, but the {} is read as a surface{}", title_of(surface_),
+                                  reason, is_sheet ? "sheet" : "mesh",
+                                  shape.note.empty() ? "" : ", since it is no even grid")},
           origin_.at(surface_.name, attribute)));
     };
     const SolverSettings& solver = surface_.solver;

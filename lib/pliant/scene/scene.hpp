@@ -146,7 +146,7 @@ struct Surface {
   /// transform only.
   std::string driven_by = {};
   SurfaceShape shape = {};                      ///< by default a `GridSheet`
-  MeshReading reading = {};                     ///< of a shape that is a mesh
+  MeshReading reading = {};                     ///< of a sheet, or of a shape that is a mesh
   std::optional<Subdivision> subdivision = {};  ///< of a shape that is a mesh: it is a cage
   CacheFile cache = {};                         ///< of a sheet, or of a shape that is a mesh
   TransformChannels transform = {};

@@ -170,11 +170,13 @@ std::string scene_around(const std::string& element, const std::string& attribut
       fmt::format("{}><points>{}</points>{}</nurbs>",
                   begin("nurbs", " columns=\"4\" rows=\"4\" degreeU=\"2\" degreeV=\"2\""),
                   fmt::join(std::vector(48, 0), " "), knots);
+  const std::set<std::string> of_surfaces = {"unit", "axis", "border"};
+  const std::string uv = of_surfaces.contains(attribute) ? " uv=\"surface\"" : "";
   const std::string shape = element == "mesh" || element == "subdivision"
                                 ? begin(element, " file=\"/etc/passwd\"") + "/>"
                             : element == "nurbs" || element == "knots"
                                 ? net
-                                : begin("grid", " columns=\"3\" rows=\"3\"") + "/>";
+                                : begin("grid", " columns=\"3\" rows=\"3\"" + uv) + "/>";
   const std::string part = element == "map"
                                ? fmt::format("<material>{}/></material>",
                                              begin("map", " channel=\"b\" file=\"soft.png\""))

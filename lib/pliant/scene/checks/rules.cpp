@@ -163,8 +163,18 @@ class WholeChecker {
 
   void check_whole_body(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
+    const bool has_edges =
+        !solver.edges.are_clamped() || scene_.origin.gives(surface.name, "edges");
+    const bool is_surface = std::holds_alternative<GridSheet>(surface.shape) &&
+                            surface.reading.uv == UvReading::Surface;
+    if (is_surface && has_edges)
+      findings_.add_problem(
+          scene_.origin.last_of(surface.name, {"uv", "edges"}),
+          fmt::format("{0}.edges: edges are those of a grid, but {0}.uv is \"surface\"; border is "
+                      "what holds a surface",
+                      surface.name));
     if (solver.region != SolvedRegion::All) {
-      if (!solver.edges.are_clamped() || scene_.origin.gives(surface.name, "edges"))
+      if (has_edges && !is_surface)
         findings_.add_problem(
             scene_.origin.last_of(surface.name, {"region", "edges"}),
             fmt::format("{0}.edges: edges need region=\"all\", but "
@@ -345,25 +355,40 @@ class WholeChecker {
       complain(surface.name, "axis",
                fmt::format("{}.axis is 0 0 0, but must have a direction", surface.name));
     const bool is_closed = reading.wrap != Wrap::None;
+    const bool is_sheet = std::holds_alternative<GridSheet>(surface.shape);
+    if (is_sheet) {
+      for (const auto& [attribute, is_given] :
+           {std::pair("wrap", is_closed), std::pair("weld", reading.weld.has_value())}) {
+        if (is_given)
+          complain(surface.name, attribute,
+                   fmt::format("{}.{} is for a mesh, but the surface is a sheet", surface.name,
+                               attribute));
+      }
+      if (reading.uv == UvReading::Surface) return;
+    }
     if (is_closed && reading.uv == UvReading::Surface)
       complain(
           surface.name, "wrap",
           fmt::format("{}.wrap is for a mesh that is read as a grid, but uv=\"surface\" reads this "
                       "one as a surface, which closes by itself",
                       surface.name));
-    if (reading.uv != UvReading::Grid && !is_closed) return;
+    if (reading.uv != UvReading::Grid && !is_closed && !is_sheet) return;
     const auto refuse = [&](const char* attribute, bool is_given) {
       if (!is_given) return;
       complain(
           surface.name, attribute,
-          fmt::format("{}.{} is for a mesh that is read as a surface, but {} reads this one as "
-                      "a grid",
-                      surface.name, attribute, is_closed ? "wrap" : "uv=\"grid\""));
+          is_sheet
+              ? fmt::format("{}.{} is for a sheet that is read as a surface; uv=\"surface\" reads "
+                            "it so",
+                            surface.name, attribute)
+              : fmt::format("{}.{} is for a mesh that is read as a surface, but {} reads this one "
+                            "as a grid",
+                            surface.name, attribute, is_closed ? "wrap" : "uv=\"grid\""));
     };
     refuse("unit", reading.unit.has_value());
     refuse("axis", reading.axis.has_value());
     refuse("border", reading.border.has_value());
-    refuse("weld", reading.weld.has_value());
+    if (!is_sheet) refuse("weld", reading.weld.has_value());
   }
 
   // Also of a group.

@@ -213,6 +213,31 @@ struct Description<SheetOf<Of>> {
   template <class Row, class... Each>
   static void rows(Row&& row, Each&... each) {
     describe(row, std::get<GridSheet>(each.surface.shape)...);
+    row(Attribute{.name = "uv",
+                  .meaning = "`grid`: the sheet is a grid of columns and rows; `surface`: it is "
+                             "read as a mesh with `uv=\"surface\"`, so that regions are round",
+                  .words = uv_words,
+                  .later = later_uv_words,
+                  .instead = use_surface,
+                  .absent = "grid"},
+        each.surface.reading.uv...);
+    row(Attribute{.name = "unit",
+                  .meaning = "length that counts as 1 in u and v, or two of them, along u and v; "
+                             "only of a surface",
+                  .unit = "length/uv",
+                  .range = positive,
+                  .absent = "width and depth"},
+        each.surface.reading.unit...);
+    row(Attribute{.name = "axis",
+                  .meaning = "direction that u follows along the surface; only of a surface",
+                  .unit = "1",
+                  .absent = "that of its columns, x"},
+        each.surface.reading.axis...);
+    row(Attribute{.name = "border",
+                  .meaning = "what the sheet's border does; only of a surface",
+                  .words = border_words,
+                  .absent = "clamped"},
+        each.surface.reading.border...);
     describe(row, each.surface.cache...);
   }
 };
