@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -177,6 +178,14 @@ std::span<const Look> looks() { return all_looks; }
 
 Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,
                                 const StarterSource& source) {
+  // Where it yields a dent stays, and should be round. The whole of a sheet is the same region
+  // either way, and its grid is faster.
+  const Surface& surface = scene.scene().surfaces.front();
+  if (look.give > 0 && std::holds_alternative<GridSheet>(surface.shape) &&
+      surface.solver.region == SolvedRegion::Forces) {
+    const auto changed = scene.apply({edit::Set{surface.name + ".uv", "surface"}});
+    if (!changed) return fail(changed.error());
+  }
   // A density and a stiffness of 1 show what others make: frequency² and peak are proportional to
   // 1/density and 1/stiffness, as long as nothing yields.
   Numbers numbers{.density = 1, .stiffness = 1};

@@ -190,6 +190,21 @@ class New(Command):
             self.assertLess(np.ptp(settled), 0.01 * peaks[0])
 
     @long
+    def test_what_yields_has_round_dents(self):
+        for starter, material, is_round in (("sheet", "metal", True), ("sheet", "rubber", False),
+                                            ("dent", None, True), ("trampoline", "paper", False)):
+            self.run_pliant("new", starter, "-o", "a.xml", "--force",
+                            *(["--material", material] if material else []))
+            self.assertEqual('uv="surface"/>' in self.read("a.xml").decode(), is_round, (starter, material))
+        self.run_pliant("new", "sheet", "-o", "a.xml", "--force", "--material", "metal")
+        moved = self.displacements("a.xml")[0]
+        self.assertGreater(moved[-1], 0.15 * moved.max())  # a dent stays
+        self.run_pliant("bake", "a.xml", "-o", "a.npy")
+        last = np.abs(np.load(self.path("a.npy"))[-1, :, 1]).reshape(49, 49)
+        self.assertLess(np.abs(last - last.T).max(), 1e-6 * last.max())
+        self.assertLess(max(last[0, 0], last[-1, -1]), 1e-12)
+
+    @long
     def test_a_flag_keeps_its_length(self):
         for material in (None, "cloth", "jelly"):  # jelly is the softest
             out = f"{material}.xml"
