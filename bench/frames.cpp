@@ -15,7 +15,8 @@
 // Medians over frames, in ms; "rest" is the sum of all but the solve, "frame" that of all but the
 // writers: on a noisy machine a median of sums would contain the noise. With --least the minima,
 // for a shared machine: other loads only lengthen times. At the end: the cost of a selection on a
-// million vertices, compared with computing every distance.
+// million vertices, compared with computing every distance, that of forces along their normals,
+// and that of a force that follows.
 //
 // Run: build/release/bench/frames [--sides 51,101,...] [--seconds S] [--threads N] [--least]
 
@@ -36,6 +37,7 @@
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/pliant.hpp"
 #include "pliant/region/region.hpp"
+#include "pliant/sampling/sampling.hpp"
 
 namespace {
 
@@ -245,6 +247,57 @@ void print_selection(const Options& options) {
   }
 }
 
+// What forces along normals take on a million vertices, and what following takes.
+void print_normals_and_follow(const Options& options) {
+  constexpr int side = 1001;
+  const Mesh mesh = make_mesh({.columns = side, .rows = side, .width = 20, .depth = 20});
+  const GridMapping mapping = find_grid(mesh).value();
+  const NodeFaces faces =
+      node_faces(mesh, mapping.vertex_nodes, static_cast<int>(mapping.rest.rows())).value();
+  const Transform transform;
+  const PlacedNodes nodes(mapping.rest, transform, nullptr, &faces);
+  SampledForce uniform, pressure;
+  uniform.kind = UniformForce{};
+  pressure.kind = PressureForce{};
+  uniform.force_radius = pressure.force_radius = 100;
+  const auto loads_of = [&](const SampledForce& force) {
+    std::vector<double> times;
+    for (int round = 0; round < 9; ++round) {
+      times.push_back(seconds([&] {
+        Batch sums;
+        for (int node = 0; node < side * side; node += batch_size) {
+          sums.count = std::min(batch_size, side * side - node);
+          nodes.add_loads(node, sums.count, force, 0, sums);
+        }
+      }));
+    }
+    return typical(times, options.is_least) * 1e3;
+  };
+  const double plain = loads_of(uniform), along = loads_of(pressure);
+  fmt::print("\nload of one force on {} x {} vertices, ms\nuniform {:.2f}, pressure {:.2f}, "
+             "normals {:.2f}\n",
+             side, side, plain, along, along - plain);
+  // A force that follows by a transform, sampled again and again.
+  Scene scene = make_scene(51);
+  const auto sampled = [&] {
+    const Carriers carriers(scene);
+    const auto faults = std::make_shared<ForceFaults>();
+    constexpr int count = 100'000;
+    std::vector<double> times;
+    for (int round = 0; round < 9; ++round) {
+      times.push_back(seconds([&] {
+        for (int frame = 0; frame < count; ++frame)
+          (void)sample_force(scene, scene.forces[0], scene.surfaces[0], frame, faults, carriers);
+      }));
+    }
+    return typical(times, options.is_least) / count * 1e6;
+  };
+  const double standing = sampled();
+  scene.forces[0].follow = "sheet";
+  const double following = sampled();
+  fmt::print("a force at a frame, us: {:.3f}, one that follows {:.3f}\n", standing, following);
+}
+
 }  // namespace
 
 int main(int count, char* arguments[]) {
@@ -258,5 +311,6 @@ int main(int count, char* arguments[]) {
     return 2;
   print_frames(options);
   print_selection(options);
+  print_normals_and_follow(options);
   return 0;
 }
