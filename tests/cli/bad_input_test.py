@@ -48,6 +48,29 @@ BAD_SCENES = {
     "a goal without a shape at rest": (
         GRID, GRID + '<material goal="2"/><solver reference="none"/>', 3,
         'sheet.goal is 2, but must be 0 with reference="none"'),
+    "a hold of nothing": (GRID, GRID + "<hold/>", 3, "sheet.hold.0: a hold needs a file, an attribute or vertices"),
+    "a hold of vertices and a threshold": (
+        GRID, GRID + '<hold vertices="1" above="0.5"/>', 3, 'sheet.hold.0: a hold of vertices has no "above"'),
+    "a hold of vertices and a file": (
+        GRID, GRID + '<hold vertices="1" file="a.png"/>', 3, "sheet.hold.0: a hold of vertices has no file"),
+    "a hold of two sources": (
+        GRID, GRID + '<hold attribute="_pin" file="a.png"/>', 3,
+        "sheet.hold.0: a hold has a file or an attribute, but this one has both"),
+    "a hold in a sheet by an attribute": (
+        GRID, GRID + '<hold attribute="_pin"/>', 3,
+        'the attribute "_pin" is one of a mesh\'s vertices, but the surface is no <mesh>'),
+    "a hold of a vertex that is not there": (
+        GRID, GRID + '<hold vertices="1"/><hold vertices="999999"/>', 3,
+        "sheet.hold.1: there is no vertex 999999: the surface has "),
+    "a hold of a vertex below 0": (GRID, GRID + '<hold vertices="1 -2"/>', 3, '"-2"'),
+    "a hold of no numbers": (GRID, GRID + '<hold vertices="1 x"/>', 3, '"x"'),
+    "a hold in a union": (
+        GRID, GRID + '<hold vertices="1"/><solver combine="union"/>', 3,
+        'sheet.hold.0: a <hold> needs rectangles, but sheet.combine is "union"'),
+    "a hold without a shape at rest": (
+        GRID, GRID + '<hold vertices="1"/><solver reference="none"/>', 3, 'but sheet.reference is "none"'),
+    "a hold of another kind of file": (
+        GRID, GRID + '<hold file="a.jpg"/>', 3, "its name must end in .png or .npy"),
     "a damping and its ratio": (GRID, GRID + '<material damping="1" dampingRatio="0.1"/>', 3,
                                 "sheet.damping and sheet.dampingRatio are both given"),
     "a yield with exact steps": (

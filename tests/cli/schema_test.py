@@ -13,8 +13,8 @@ from command import Command, PLIANT, SOURCE, main
 SCHEMA = os.path.join(SOURCE, "docs/pliant-scene.xsd")
 FORCES = ("point", "radial", "line", "uniform", "vortex", "noise", "inertia", "pressure")
 ALIKE = {"number": "1", "vector": "1 1 1", "boolean": "true", "word": None, "integer": "1", "rate": "25",
-         "name": "other", "names": "sheet", "path": "none.obj", "text": "some", "one or two numbers": "1 2",
-         "number or vector": "1 2 3", "one or four words": "clamped", "value": "2", "tangent": "auto",
+         "name": "other", "names": "sheet", "integers": "0 3", "path": "none.obj", "text": "some",
+         "one or two numbers": "1 2", "number or vector": "1 2 3", "one or four words": "clamped", "value": "2", "tangent": "auto",
          "interpolation": "linear", "extrapolation": "repeat", "handle": "0 0", "four numbers": "0 0 1 1"}
 
 # The rules that the schema cannot say, in the words of docs/scene-format.md, and the reader's messages about them.
@@ -85,6 +85,8 @@ def scene_around(change, extra=None):
         part = whole(element)
     if element == "map":
         part = whole("material", "", whole("map", f'channel="b" file="{SOURCE}/examples/soft.png"'))
+    if element == "hold":
+        part = whole("hold", "" if attribute == "vertices" else f'file="{SOURCE}/examples/soft.png"')
     easing = {"amplitude": ' interpolation="elasticIn"', "period": ' interpolation="elasticIn"',
               "back": ' interpolation="backIn"', "control": ' interpolation="cubicBezier"'}.get(attribute, "")
     children = ""
@@ -207,7 +209,7 @@ class Schema(Command):
 
     def test_wrong_children(self):
         places = {"scene", "surface", "grid", "mesh", "nurbs", "points", "weights", "knots", "subdivision", "transform",
-                  "material", "map", "tangents", "solver", "path", "waypoint", "falloff", "animate", "key", "loop",
+                  "material", "map", "tangents", "hold", "solver", "path", "waypoint", "falloff", "animate", "key", "loop",
                   "group", *FORCES}
         scenes = [scene_around((place, "at" if place == "key" else "", None), (place, content))
                   for place in sorted(places) for content in ("<wrong/>", "some text", f"<{place}/>")]

@@ -112,7 +112,7 @@ TEST_CASE("a goal adds itself to each eigenvalue", "[plate][goal][vibration]") {
   }
 }
 
-TEST_CASE("motions that a goal does not resist are left out, and no others",
+TEST_CASE("motions that no goal and no held node resists are left out, and no others",
           "[plate][goal][vibration]") {
   const Grid open = unit_grid(7, 6);
   const Grid ring{9, 6, 0.2, 0.25, true, false};
@@ -148,6 +148,34 @@ TEST_CASE("motions that a goal does not resist are left out, and no others",
     if (rigid > 0) REQUIRE(std::abs(all(rigid - 1)) < 1e-8 * all(rigid));
     CHECK_THAT(smallest(outline, 60, SolverChoice::Auto, system.factors),
                WithinRel(all(rigid), 1e-7));
+  }
+  // The same with held nodes in place of these, or together.
+  for (const auto& [outline, nodes, rigid] : cases) {
+    const Grid& grid = outline.grid();
+    if (nodes.empty()) continue;
+    InteriorMask mask(static_cast<std::size_t>(grid.node_count()), 0);
+    outline.for_each_run([&](const Outline::Run& run) {
+      for (int i = run.i0; i <= run.i1; ++i) mask[grid.node(i, run.j)] = 1;
+    });
+    std::vector<double> factors(mask.size());
+    for (const bool are_all : {true, false}) {
+      for (const auto& [i, j] : nodes) mask[grid.node(i, j)] = 0;
+      if (!are_all) {
+        mask[grid.node(nodes[0].first, nodes[0].second)] = 1;
+        factors[grid.node(nodes[0].first, nodes[0].second)] = 1.5;
+      }
+      PlateSystem system{Outline(grid, outline.edges(), mask), {1.3, 2.1, 0.8}};
+      system.poisson = 0.25;
+      system.factors = goals_of(factors);
+      system.goal = are_all ? 0 : 60;
+      CHECK(is_held(system) == (rigid == 0));
+      const Eigen::MatrixXd upper = assemble_upper(system);
+      const Eigen::MatrixXd masses = GridAssembly(system).weights().masses.asDiagonal();
+      const Eigen::VectorXd all = modes_of(upper.selfadjointView<Eigen::Upper>(), masses).values;
+      if (rigid > 0) REQUIRE(std::abs(all(rigid - 1)) < 1e-8 * all(rigid));
+      const auto solver = make_plate_solver(SolverChoice::Auto);
+      CHECK_THAT(smallest_eigenvalue(*solver, system).value(), WithinRel(all(rigid), 1e-7));
+    }
   }
   // Everywhere: g, three times.
   CHECK_THAT(smallest({unit_grid(17, 14), free_edges}, 0.7), WithinRel(0.7, 1e-7));

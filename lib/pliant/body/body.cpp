@@ -60,11 +60,13 @@ TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
 }
 
 Body::Body(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
-           std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeFaces> faces)
+           std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeMarks> held,
+           std::shared_ptr<const NodeFaces> faces)
     : rest_(std::move(rest)),
       plastic_places_(plastic_places),
       settings_(settings),
       factors_(std::move(factors)),
+      held_(std::move(held)),
       faces_(std::move(faces)) {
   if (settings_.is_animated) rest_.setZero();
   state_ = rest_state();

@@ -126,7 +126,8 @@ class Body {
   /// `plastic_places`: the nodes or triangles that have plastic curvatures if the body yields.
   /// `faces` null: no force uses normals.
   Body(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
-       std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeFaces> faces);
+       std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeMarks> held,
+       std::shared_ptr<const NodeFaces> faces);
 
   /// Nodes in object space (#nodes x 3), as forces use them. Requires: they outlive the result.
   PlacedNodes placed(const Field& nodes, const BodyInputs& inputs) const {
@@ -173,6 +174,7 @@ class Body {
   Eigen::Index plastic_places_;
   BodySettings settings_;
   std::shared_ptr<const NodeFactors> factors_;
+  std::shared_ptr<const NodeMarks> held_;  // null: no node is held
   std::shared_ptr<const NodeFaces> faces_;
   BodyState state_;
 };

@@ -8,7 +8,7 @@ namespace pliant {
 /// The body of a surface that another one drives: it has no nodes, and its step changes nothing.
 class DrivenBody final : public Body {
  public:
-  explicit DrivenBody(const BodySettings& settings) : Body(Field(0, 3), 0, settings, {}, {}) {}
+  explicit DrivenBody(const BodySettings& settings) : Body(Field(0, 3), 0, settings, {}, {}, {}) {}
 
   Result<StepPlan> look(const BodyInputs&) const override { return StepPlan{}; }
   Result<void> step(const BodyInputs&) override { return {}; }

@@ -44,8 +44,9 @@ class ElasticBody : public Body {
  protected:
   ElasticBody(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
               RunContext context, std::shared_ptr<const NodeFactors> factors,
-              std::shared_ptr<const NodeFaces> faces)
-      : Body(std::move(rest), plastic_places, settings, std::move(factors), std::move(faces)),
+              std::shared_ptr<const NodeMarks> held, std::shared_ptr<const NodeFaces> faces)
+      : Body(std::move(rest), plastic_places, settings, std::move(factors), std::move(held),
+             std::move(faces)),
         context_(std::move(context)) {}
 
   /// The positions from which the frame is solved: those that settle are at rest.

@@ -22,11 +22,13 @@ bool is_lost(const ForceSelection& at_rest, const ForceSelection& now) {
 bool is_outline_of(const Outline& outline, const Patch& patch) {
   const Grid& grid = outline.grid();
   return grid == patch.grid(grid) && outline.mask() == patch.interior &&
+         outline.has_held_nodes() == patch.has_held_nodes &&
          outline.edges() == Outline(grid, patch.edges).edges();
 }
 
-// A patch with a mask has clamped edges.
+// A patch with a mask has clamped edges, unless the mask lacks nodes that are held.
 Outline outline_of(const Grid& grid, const Patch& patch) {
+  if (patch.has_held_nodes) return {patch.grid(grid), patch.edges, patch.interior};
   if (!patch.interior.empty()) return {patch.grid(grid), patch.interior};
   return {patch.grid(grid), patch.edges};
 }
@@ -78,9 +80,9 @@ class GridPatchPlate final : public PatchPlate {
 
 GridBody::GridBody(const Grid& grid, Field rest, const BodySettings& settings, SolverChoice solver,
                    RunContext context, std::shared_ptr<const NodeFactors> factors,
-                   std::shared_ptr<const NodeFaces> faces)
+                   std::shared_ptr<const NodeMarks> held, std::shared_ptr<const NodeFaces> faces)
     : ElasticBody(std::move(rest), grid.node_count(), settings, std::move(context),
-                  std::move(factors), std::move(faces)),
+                  std::move(factors), std::move(held), std::move(faces)),
       grid_(grid),
       solvers_(solver, context_) {
   PLIANT_EXPECTS(grid_.columns >= 3 && grid_.rows >= 3 && rest_.rows() == grid_.node_count());
@@ -139,6 +141,7 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
   if (plan.is_whole) {
     for (Patch& patch : selection.regions[0].patches) patch.edges = settings_.edges;
   }
+  for (Region& region : selection.regions) hold_nodes(inputs, region);
   if (settings_.measure == Measure::Current) find_lost(inputs, room, selection);
   if (recovers()) {
     plan.recovering = recovering_nodes(grid_, state_.unsettled, selection.regions, room.marks,
@@ -146,15 +149,10 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
     if (!plan.recovering.empty()) {
       selection =
           recombined(std::move(selection), settings_.combine, boxes_around(grid_, plan.recovering));
+      for (Region& region : selection.regions) hold_nodes(inputs, region);
     }
     plan.settling = settling_nodes(grid_, rest_, state_.positions, state_.velocities,
                                    selection.regions, room.marks, std::move(plan.settling));
-  }
-  for (Region& region : selection.regions) {
-    for (Patch& patch : region.patches) {
-      patch.has_goal = false;
-      if (inputs.goal > 0 && !patch.is_held()) patch.has_goal = is_held_by_goal(inputs, patch);
-    }
   }
   for (std::size_t k = 0; k < inputs.forces.size(); ++k) {
     ForceSelection& force = selection.forces[k];
@@ -164,8 +162,39 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
   return {};
 }
 
-// Whether a goal holds a patch that its edges do not.
-bool GridBody::is_held_by_goal(const BodyInputs& inputs, const Patch& patch) const {
+// Takes nodes that are held out of the patches of a region, which are rectangles or rings then, and
+// patches of which all are held out of it. Finds what goals and such nodes hold.
+void GridBody::hold_nodes(const BodyInputs& inputs, Region& region) const {
+  const auto all_held = [&](Patch& patch) {
+    if (!held_ || (!patch.interior.empty() && !patch.has_held_nodes)) return false;
+    const Box& box = patch.box;
+    const Box inner = patch.inner();
+    patch.has_held_nodes = false;
+    patch.interior.assign(std::size_t(box.columns()) * std::size_t(box.rows()), 0);
+    int left = 0;
+    for (int j = inner.j0; j <= inner.j1; ++j) {
+      for (int i = inner.i0; i <= inner.i1; ++i) {
+        const bool is_held = (*held_)[static_cast<std::size_t>(grid_.node_round(i, j))] != 0;
+        patch.has_held_nodes = patch.has_held_nodes || is_held;
+        if (is_held) continue;
+        patch.interior[std::size_t(j - box.j0) * std::size_t(box.columns()) +
+                       std::size_t(i - box.i0)] = 1;
+        ++left;
+      }
+    }
+    if (!patch.has_held_nodes) patch.interior.clear();
+    return left == 0;
+  };
+  std::erase_if(region.patches, all_held);
+  for (Patch& patch : region.patches) {
+    patch.is_held_within = false;
+    if ((inputs.goal > 0 || patch.has_held_nodes) && !patch.is_held())
+      patch.is_held_within = is_held_within(inputs, patch);
+  }
+}
+
+// Whether held nodes or a goal hold a patch that its edges do not.
+bool GridBody::is_held_within(const BodyInputs& inputs, const Patch& patch) const {
   PlateSystem system{outline_of(grid_, patch), inputs.stiffness};
   system.factors = factors_on(grid_, patch, factors_);
   system.goal = inputs.goal;

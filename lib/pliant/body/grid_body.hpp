@@ -19,11 +19,12 @@ class GridBody final : public ElasticBody {
  public:
   /// Starts at rest. Requires: `rest` is #nodes x 3, object space, finite; at least 3 x 3 nodes.
   /// `solver` and `context` are those of its plates; the context's profile receives the times of
-  /// its steps. `factors` null: the material is even. `faces` null: no force uses normals.
+  /// its steps. `factors` null: the material is even. `held` marks nodes that stay; null: none.
+  /// `faces` null: no force uses normals.
   GridBody(const Grid& grid, Field rest, const BodySettings& settings,
            SolverChoice solver = SolverChoice::Auto, RunContext context = {},
            std::shared_ptr<const NodeFactors> factors = {},
-           std::shared_ptr<const NodeFaces> faces = {});
+           std::shared_ptr<const NodeMarks> held = {}, std::shared_ptr<const NodeFaces> faces = {});
 
   Result<StepPlan> look(const BodyInputs& inputs) const override;
 
@@ -53,7 +54,8 @@ class GridBody final : public ElasticBody {
   };
 
   Result<void> plan(const BodyInputs& inputs, Room& room, StepPlan& plan) const;
-  bool is_held_by_goal(const BodyInputs& inputs, const Patch& patch) const;
+  void hold_nodes(const BodyInputs& inputs, Region& region) const;
+  bool is_held_within(const BodyInputs& inputs, const Patch& patch) const;
   void find_lost(const BodyInputs& inputs, Room& room, Selection& selection) const;
   void keep_outlines();
   void find_rows(Solve& one) const;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "pliant/core/edges.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
 #include "pliant/plate/time_steps.hpp"
@@ -25,6 +28,9 @@ enum class Release {
   Freeze,   ///< they stay in place, as in the thesis
   Recover,  ///< they are solved until they are back at rest
 };
+
+/// A number other than 0 for each node that is meant (#nodes).
+using NodeMarks = std::vector<std::uint8_t>;
 
 /// What of a body is solved.
 enum class SolvedRegion {

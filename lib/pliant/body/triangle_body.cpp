@@ -147,9 +147,10 @@ class TrianglePatchPlate final : public PatchPlate {
 
 TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
                            const BodySettings& settings, SolverChoice solver, RunContext context,
-                           std::shared_ptr<const NodeFactors> factors)
+                           std::shared_ptr<const NodeFactors> factors,
+                           std::shared_ptr<const NodeMarks> held)
     : ElasticBody(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
-                  std::move(context), std::move(factors), surface),
+                  std::move(context), std::move(factors), std::move(held), surface),
       surface_(std::move(surface)),
       tree_(std::move(tree)),
       is_border_(border_nodes(*surface_)),
@@ -209,7 +210,7 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
     if (selection.patches.empty()) {
       if (auto selected = select_all(selection); !selected) return selected;
     }
-    find_goals(inputs, selection);
+    find_what_holds(inputs, selection);
     return weigh(surface, tree, inputs, selection);
   }
   LevelSet level_set =
@@ -231,29 +232,42 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
   if (selection.patches.empty() || !(selection.level_set == level_set)) {
     selection.level_set = std::move(level_set);
     selection.patches.clear();
-    auto patches =
-        cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
+    auto patches = cut_out(*surface_, selection.level_set, is_border_, settings_.border,
+                           context_.should_stop, held());
     if (!patches) return fail(patches.error());
     selection.patches = *std::move(patches);
   }
-  find_goals(inputs, selection);
+  find_what_holds(inputs, selection);
   return weigh(surface, tree, inputs, selection);
 }
 
-// Patches that nothing else holds move if a goal pulls them back, and stay in place if it does so
-// at nodes beyond one line.
-void TriangleBody::find_goals(const BodyInputs& inputs, TriangleSelection& selection) const {
+// Patches that nothing else holds move if a node of theirs is held or pulled back by a goal, and
+// stay in place if such nodes are beyond one line.
+void TriangleBody::find_what_holds(const BodyInputs& inputs, TriangleSelection& selection) const {
+  const LevelSet& level_set = selection.level_set;
   for (TrianglePatch& patch : selection.patches) {
-    patch.has_goal = false;
+    patch.is_held_within = false;
+    patch.has_rim = true;
     patch.may_float = settings_.region == SolvedRegion::All;
-    if (inputs.goal == 0 || patch.is_held()) continue;
-    std::vector<int> nodes;  // with a goal
-    for (int k = 0; k < patch.free_nodes; ++k) {
-      const int node = selection.level_set.nodes[patch.points[k]];
+    std::vector<int> nodes;  // that are held or pulled back
+    if (held_) {
+      patch.has_rim = false;
+      for (int k = patch.cells.free_points; k < patch.cells.point_count; ++k) {
+        const int point = patch.points[static_cast<std::size_t>(k)];
+        const int node = point >= 0 ? level_set.nodes[point] : -1;
+        const bool is_within = node >= 0 && (*held_)[node] != 0 && level_set.at_nodes[point] > 0 &&
+                               (settings_.border == Border::Free || !is_border_[node]);
+        if (is_within) nodes.push_back(node);
+        patch.has_rim = patch.has_rim || !is_within;
+      }
+    }
+    if (patch.is_held() || (inputs.goal == 0 && nodes.empty())) continue;
+    for (int k = 0; inputs.goal > 0 && k < patch.free_nodes; ++k) {
+      const int node = level_set.nodes[patch.points[k]];
       if (!factors_ || factor_at(factors_->goal, node) > 0) nodes.push_back(node);
     }
     patch.may_float = patch.may_float || !nodes.empty();
-    patch.has_goal = are_beyond_line(surface_->rest, nodes);
+    patch.is_held_within = are_beyond_line(surface_->rest, nodes);
   }
 }
 
@@ -261,8 +275,8 @@ Result<void> TriangleBody::select_all(TriangleSelection& selection) const {
   std::vector<int> nodes(static_cast<std::size_t>(surface_->node_count()));
   std::iota(nodes.begin(), nodes.end(), 0);
   selection.level_set = with_inside(*surface_, {}, nodes);
-  auto patches =
-      cut_out(*surface_, selection.level_set, is_border_, settings_.border, context_.should_stop);
+  auto patches = cut_out(*surface_, selection.level_set, is_border_, settings_.border,
+                         context_.should_stop, held());
   if (!patches) return fail(patches.error());
   selection.patches = *std::move(patches);
   return {};

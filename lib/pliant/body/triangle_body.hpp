@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "pliant/body/elastic_body.hpp"
@@ -31,17 +32,18 @@ class TriangleBody final : public ElasticBody {
  public:
   /// Starts at rest. Requires: settings.reference is Rest. `solver` and `context` are those of its
   /// plates; the context's profile receives the times of its steps. `factors` null: the material is
-  /// even.
+  /// even. `held` marks nodes that stay; null: none.
   TriangleBody(const std::shared_ptr<const TriangleSurface>& surface, const BodySettings& settings,
                SolverChoice solver = SolverChoice::Auto, RunContext context = {},
-               std::shared_ptr<const NodeFactors> factors = {})
+               std::shared_ptr<const NodeFactors> factors = {},
+               std::shared_ptr<const NodeMarks> held = {})
       : TriangleBody(surface, PointTree(surface->rest), settings, solver, std::move(context),
-                     std::move(factors)) {}
+                     std::move(factors), std::move(held)) {}
 
   /// The same with the tree of the surface's nodes.
   TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
                const BodySettings& settings, SolverChoice solver, RunContext context,
-               std::shared_ptr<const NodeFactors> factors);
+               std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeMarks> held);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override {
     return look_again(inputs, StepPlan(plan_));
@@ -71,7 +73,7 @@ class TriangleBody final : public ElasticBody {
   };
 
   Result<void> plan(const BodyInputs& inputs, StepPlan& plan) const;
-  void find_goals(const BodyInputs& inputs, TriangleSelection& selection) const;
+  void find_what_holds(const BodyInputs& inputs, TriangleSelection& selection) const;
   Result<void> select_all(TriangleSelection& selection) const;
   Result<void> plan_on(const TriangleSurface& surface, const PointTree& tree,
                        const BodyInputs& inputs, StepPlan& plan) const;
@@ -81,6 +83,9 @@ class TriangleBody final : public ElasticBody {
                                             SolverChoice solver) const;
   void find_rows(Solve& one) const;
   int first_node(std::size_t k) const;
+  std::span<const std::uint8_t> held() const {
+    return held_ ? std::span(*held_) : std::span<const std::uint8_t>();
+  }
 
   Result<void> select(const BodyInputs& inputs, StepPlan& plan) override {
     return this->plan(inputs, plan);

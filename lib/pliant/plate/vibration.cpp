@@ -54,12 +54,13 @@ Result<double> find_unheld(const std::function<Result<double>(double shift)>& fi
 }
 
 // The motions of a rectangle that bend nothing: 1, u and v, as far as its edges allow them. A mask
-// has a rim.
+// has a rim. On all nodes, a column each.
 Eigen::MatrixXd unbent_motions(const Outline& outline) {
   const Grid& grid = outline.grid();
   const Edges& edges = outline.edges();
   int pinned = 0;
-  bool is_clamped = !outline.mask().empty() && !outline.is_unheld();
+  const bool is_masked = !outline.mask().empty() && !outline.has_held_nodes();
+  bool is_clamped = is_masked && !outline.is_unheld();
   Eigen::RowVector2d hinge(0, 0);  // where a line of u or v is 0: at the pinned edge
   const auto look = [&](Edge edge, int direction, double place) {
     is_clamped = is_clamped || edge == Edge::Clamped;
@@ -81,42 +82,55 @@ Eigen::MatrixXd unbent_motions(const Outline& outline) {
     for (int i = 0; i < grid.columns; ++i)
       nodes.row(grid.node(i, j)) << 1, i - hinge(0), j - hinge(1);
   }
-  const Field all = interior_of(outline, nodes);
   const auto is_pinned = [](Edge a, Edge b) { return a == Edge::Pinned || b == Edge::Pinned; };
   std::vector<int> columns;
   if (pinned == 0) columns.push_back(0);
   if (!grid.is_closed_u && (pinned == 0 || is_pinned(edges.u0, edges.u1))) columns.push_back(1);
   if (!grid.is_closed_v && (pinned == 0 || is_pinned(edges.v0, edges.v1))) columns.push_back(2);
-  return all(Eigen::all, columns);
+  return nodes(Eigen::all, columns);
 }
 
-// Those of them that no goal resists: they are 0 at all nodes that it pulls back. The numbers are
-// whole, and so small that none is rounded.
+// Combines motions to those that are 0 at a node: one less, unless all are. The numbers are whole,
+// and so small that none is rounded.
+void stop_at(Eigen::Index node, Eigen::MatrixXd& motions) {
+  Eigen::Index pivot = -1;
+  for (Eigen::Index k = 0; k < motions.cols(); ++k) {
+    const double own = std::abs(motions(node, k));
+    if (own > 0 && (pivot < 0 || own < std::abs(motions(node, pivot)))) pivot = k;
+  }
+  if (pivot < 0) return;
+  const Eigen::VectorXd moving = motions.col(pivot);
+  Eigen::MatrixXd left(motions.rows(), motions.cols() - 1);
+  for (Eigen::Index k = 0; k < left.cols(); ++k) {
+    const Eigen::Index from = k < pivot ? k : k + 1;
+    left.col(k) = moving(node) * motions.col(from) - motions(node, from) * moving;
+  }
+  motions = std::move(left);
+}
+
+// Those of them that no held node and no goal resists, on the unknowns.
 Eigen::MatrixXd rigid_motions(const PlateSystem& system) {
-  Eigen::MatrixXd motions = unbent_motions(system.outline);
-  if (motions.cols() == 0 || system.goal == 0) return motions;
-  const Grid& grid = system.outline.grid();
-  Eigen::Index row = 0;
-  system.outline.for_each_run([&](const Outline::Run& run) {
-    for (int i = run.i0; i <= run.i1 && motions.cols() > 0; ++i, ++row) {
-      const int node = grid.node(i, run.j);
-      if (system.factors && factor_at(system.factors->goal, node) == 0) continue;
-      Eigen::Index pivot = -1;
-      for (Eigen::Index k = 0; k < motions.cols(); ++k) {
-        const double own = std::abs(motions(row, k));
-        if (own > 0 && (pivot < 0 || own < std::abs(motions(row, pivot)))) pivot = k;
-      }
-      if (pivot < 0) continue;
-      const Eigen::VectorXd moving = motions.col(pivot);
-      Eigen::MatrixXd left(motions.rows(), motions.cols() - 1);
-      for (Eigen::Index k = 0; k < left.cols(); ++k) {
-        const Eigen::Index from = k < pivot ? k : k + 1;
-        left.col(k) = moving(row) * motions.col(from) - motions(row, from) * moving;
-      }
-      motions = std::move(left);
+  const Outline& outline = system.outline;
+  const Grid& grid = outline.grid();
+  Eigen::MatrixXd motions = unbent_motions(outline);
+  const bool has_goal = system.goal > 0;
+  for (int j = 0; (has_goal || outline.has_held_nodes()) && j < grid.rows; ++j) {
+    for (int i = 0; motions.cols() > 0 && i < grid.columns; ++i) {
+      const int node = grid.node(i, j);
+      const bool is_resisted =
+          outline.holds(i, j)
+              ? has_goal && !(system.factors && factor_at(system.factors->goal, node) == 0)
+              : outline.has_held_nodes();
+      if (is_resisted) stop_at(node, motions);
     }
-  });
-  return motions;
+  }
+  Eigen::MatrixXd moving(unknown_count(outline), motions.cols());
+  const std::vector<int> numbers = numbers_of_unknowns(outline);
+  for (Eigen::Index node = 0; node < motions.rows(); ++node) {
+    const int number = numbers[static_cast<std::size_t>(node)];
+    if (number >= 0) moving.row(number) = motions.row(node);
+  }
+  return moving;
 }
 
 }  // namespace
@@ -127,7 +141,7 @@ Result<VibratingPlate> vibrating(PlateSolver& solver, const PlateSystem& system)
   PLIANT_EXPECTS(system.shift >= 0 && unknown_count(system.outline) >= 1);
   if (auto ready = solver.prepare(system); !ready) return fail(ready.error());
   const Eigen::Index count = unknown_count(system.outline);
-  const bool is_clamped = system.is_even() && system.shift == 0;
+  const bool is_clamped = system.is_even() && system.shift == 0 && !system.outline.has_held_nodes();
   VibratingPlate plate{.solve = [&solver](const Field& forces) { return solver.solve(forces); },
                        .masses = node_masses(system),
                        .shapes = is_clamped ? starting_shapes(system) : irregular_shapes(count),

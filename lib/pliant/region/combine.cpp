@@ -241,7 +241,8 @@ std::vector<Region> combine(std::span<const Box> boxes, Combine how, const Grid&
 }
 
 bool Patch::is_held() const {
-  return has_goal || !interior.empty() || edges.hold(is_ring_u, is_ring_v);
+  const bool has_rim = !interior.empty() && !has_held_nodes;
+  return is_held_within || has_rim || edges.hold(is_ring_u, is_ring_v);
 }
 
 int Patch::interior_count() const {

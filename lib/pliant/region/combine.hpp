@@ -26,7 +26,8 @@ struct Patch {
   bool is_ring_u = false;  ///< it goes all round a closed grid along u, and has no rim at i0 and i1
   bool is_ring_v = false;  ///< likewise along v
   Edges edges = {};        ///< those of its box; along a ring they do not matter
-  bool has_goal = false;   ///< a goal holds it where its edges do not
+  bool has_held_nodes = false;  ///< `interior` lacks some that are held, with their slopes free
+  bool is_held_within = false;  ///< its nodes hold it, or a goal does, where its edges do not
 
   /// Whether its plate is a rectangle with a rim all around.
   bool is_rectangle() const {
@@ -34,7 +35,7 @@ struct Patch {
   }
 
   /// Whether its edges hold it: a clamped one, or two pinned ones, since it turns about a single
-  /// one; or a goal does. A static plate has no solution otherwise.
+  /// one; or held nodes or a goal do. A static plate has no solution otherwise.
   bool is_held() const;
 
   /// The box without its outermost columns and rows, but for those of a ring and free ones.

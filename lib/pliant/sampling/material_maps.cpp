@@ -23,7 +23,16 @@ using Pair = std::array<double, 2>;
 
 constexpr std::size_t largest_map_file = std::size_t{4} << 30;
 
-// Reads one map after the other.
+// Where the values of a map or a hold come from: exactly one is not empty.
+struct ValueSource {
+  const std::string& file;
+  const std::string& attribute;
+  const std::vector<double>& values;
+  std::string part;       // its name among the parts of its surface
+  std::string_view what;  // "map"
+};
+
+// Reads the values of one map or hold after the other.
 class MapReader {
  public:
   MapReader(const Surface& surface, const RestShape& shape, const SceneOrigin& origin,
@@ -32,28 +41,72 @@ class MapReader {
 
   // The factors of one map, by node.
   Result<std::vector<double>> read(const MaterialMap& map) {
-    if (auto taken = take_(static_cast<std::size_t>(node_count()) * sizeof(double)); !taken)
-      return fail(taken.error());
-    auto values = values_of(map);
-    if (!values) return fail(at_map(values.error(), map));
+    auto values =
+        read(ValueSource{map.file, map.attribute, map.values, name_of(map.channel), "map"});
+    if (!values) return values;
     for (double& value : *values) value = map.low + (map.high - map.low) * value;
     return values;
+  }
+
+  // Marks the nodes of one hold.
+  Result<void> mark(const Hold& hold, const std::string& part, NodeMarks& marks) {
+    if (!hold.vertices.empty()) return mark_vertices(hold.vertices, part, marks);
+    const auto values = read(ValueSource{hold.file, hold.attribute, hold.values, part, "hold"});
+    if (!values) return fail(values.error());
+    bool is_any = false;
+    for (std::size_t node = 0; node < values->size(); ++node) {
+      if (!((*values)[node] > hold.above)) continue;
+      marks[node] = 1;
+      is_any = true;
+    }
+    if (is_any) return {};
+    const auto [least, most] = std::ranges::minmax(*values);
+    return fail(at_part({.code = ErrorCode::InvalidInput,
+                         .message = fmt::format("no node is above {}: the values go from {} to {}",
+                                                hold.above, least, most)},
+                        part));
   }
 
  private:
   int node_count() const { return static_cast<int>(shape_.rest.rows()); }
 
-  Result<std::vector<double>> values_of(const MaterialMap& map) {
-    if (!map.values.empty()) return of_program(map.values);
-    if (!map.attribute.empty()) return of_attribute(map.attribute);
-    const auto opened = OpenFile::open(map.file, origin_.root);
+  // The values of a source, by node.
+  Result<std::vector<double>> read(const ValueSource& source) {
+    if (auto taken = take_(static_cast<std::size_t>(node_count()) * sizeof(double)); !taken)
+      return fail(taken.error());
+    auto values = values_of(source);
+    if (!values) return fail(at_part(values.error(), source.part));
+    return values;
+  }
+
+  Result<void> mark_vertices(const std::vector<int>& vertices, const std::string& part,
+                             NodeMarks& marks) const {
+    const bool is_net = std::holds_alternative<NurbsNet>(surface_.shape);
+    const std::size_t count = is_net ? marks.size() : shape_.vertex_nodes.size();
+    for (const int vertex : vertices) {
+      if (vertex < 0 || static_cast<std::size_t>(vertex) >= count)
+        return fail(at_part(
+            {.code = ErrorCode::InvalidInput,
+             .message = fmt::format("there is no {0} {1}: the surface has {2}, from 0 to {3}",
+                                    is_net ? "point" : "vertex", vertex, count, count - 1)},
+            part, "vertices"));
+      const int node = is_net ? vertex : shape_.vertex_nodes[static_cast<std::size_t>(vertex)];
+      if (node >= 0) marks[static_cast<std::size_t>(node)] = 1;  // another one never moves
+    }
+    return {};
+  }
+
+  Result<std::vector<double>> values_of(const ValueSource& source) {
+    if (!source.values.empty()) return of_program(source);
+    if (!source.attribute.empty()) return of_attribute(source.attribute);
+    const auto opened = OpenFile::open(source.file, origin_.root);
     if (!opened) return fail(opened.error());
     if (auto taken = take_(static_cast<std::size_t>(opened->size())); !taken)
       return fail(taken.error());
     const auto bytes = read_file(*opened, largest_map_file, should_stop_);
     if (!bytes) return fail(bytes.error());
-    if (ending_of(map.file) == ".npy") return of_npy(*bytes, map.file);
-    return of_picture(*bytes, map.file);
+    if (ending_of(source.file) == ".npy") return of_npy(*bytes, source.file);
+    return of_picture(*bytes, source.file);
   }
 
   Result<std::vector<double>> of_npy(const std::string& bytes, const std::string& file) const {
@@ -83,19 +136,21 @@ class MapReader {
     return values;
   }
 
-  Result<std::vector<double>> of_program(const std::vector<double>& values) const {
+  Result<std::vector<double>> of_program(const ValueSource& source) const {
+    const std::vector<double>& values = source.values;
     const bool is_net = std::holds_alternative<NurbsNet>(surface_.shape);
     const std::size_t count =
         is_net ? static_cast<std::size_t>(node_count()) : shape_.vertex_nodes.size();
     if (values.size() != count)
-      return invalid(fmt::format("the map has {} values, but the surface has {} {}", values.size(),
-                                 count, is_net ? "control points" : "vertices"));
+      return invalid(fmt::format("the {} has {} values, but the surface has {} {}", source.what,
+                                 values.size(), count, is_net ? "control points" : "vertices"));
     for (std::size_t k = 0; k < count; ++k) {
       if (!std::isfinite(values[k]))
-        return invalid(fmt::format("value {} of the map is {}, which is not finite", k, values[k]));
+        return invalid(fmt::format("value {} of the {} is {}, which is not finite", k, source.what,
+                                   values[k]));
     }
     if (is_net) return values;
-    return of_vertices(values, "the map");
+    return of_vertices(values, fmt::format("the {}", source.what));
   }
 
   Result<std::vector<double>> of_attribute(const std::string& name) const {
@@ -169,12 +224,13 @@ class MapReader {
   }
 
   // An error that names a file keeps it; the scene's place comes before.
-  Error at_map(Error error, const MaterialMap& map) const {
+  Error at_part(Error error, const std::string& part, const std::string& attribute = {}) const {
     if (error.code == ErrorCode::Interrupted) return error;
     const std::string file = error.file.empty() ? "" : error.file + ": ";
-    error.message =
-        fmt::format("{}.{}: {}{}", surface_.name, name_of(map.channel), file, error.message);
-    return origin_.located(std::move(error), origin_.at(surface_.name, name_of(map.channel)));
+    error.message = fmt::format("{}.{}: {}{}", surface_.name, part, file, error.message);
+    const std::string path = fmt::format("{}.{}", surface_.name, part);
+    return origin_.located(std::move(error), attribute.empty() ? origin_.at(surface_.name, part)
+                                                               : origin_.at(path, attribute));
   }
 
   const Surface& surface_;
@@ -227,6 +283,10 @@ std::vector<std::string> attributes_of_maps(const Surface& surface) {
     if (!map.attribute.empty() && std::ranges::find(names, map.attribute) == names.end())
       names.push_back(map.attribute);
   }
+  for (const Hold& hold : surface.holds) {
+    if (!hold.attribute.empty() && std::ranges::find(names, hold.attribute) == names.end())
+      names.push_back(hold.attribute);
+  }
   return names;
 }
 
@@ -242,6 +302,19 @@ Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,
     factors_of_channel(factors, map.channel) = *std::move(values);
   }
   return factors;
+}
+
+Result<NodeMarks> read_holds(const Surface& surface, const RestShape& shape,
+                             const SceneOrigin& origin,
+                             const std::function<Result<void>(std::size_t)>& take,
+                             const StopRequest& should_stop) {
+  NodeMarks marks(static_cast<std::size_t>(shape.rest.rows()), 0);
+  MapReader reader(surface, shape, origin, take, should_stop);
+  for (std::size_t k = 0; k < surface.holds.size(); ++k) {
+    if (auto marked = reader.mark(surface.holds[k], name_of_hold(k), marks); !marked)
+      return fail(marked.error());
+  }
+  return marks;
 }
 
 }  // namespace pliant

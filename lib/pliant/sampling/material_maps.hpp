@@ -14,7 +14,7 @@ namespace pliant {
 
 // Maps of the material: read once, for each surface; not for programs. docs/model.md, "Maps".
 
-/// The names of the attributes that a surface's maps ask of its mesh, each once.
+/// The names of the attributes that a surface's maps and holds ask of its mesh, each once.
 std::vector<std::string> attributes_of_maps(const Surface& surface);
 
 /// Reads the maps of a surface and finds their factors at the nodes of its shape, whose mesh is the
@@ -27,6 +27,13 @@ Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,
                               const SceneOrigin& origin,
                               const std::function<Result<void>(std::size_t)>& take,
                               const StopRequest& should_stop = {});
+
+/// Marks the nodes that a surface's holds hold, of a shape as `read_maps` takes it. Errors, with
+/// the hold's line: those of `read_maps`; no node above the threshold; a vertex that is not there.
+Result<NodeMarks> read_holds(const Surface& surface, const RestShape& shape,
+                             const SceneOrigin& origin,
+                             const std::function<Result<void>(std::size_t)>& take,
+                             const StopRequest& should_stop = {});
 
 /// Checks what maps make of the material, at every node, every triangle of a surface, and every
 /// frame of the scene: density, damping, hardening and goal >= 0, b, d and yield > 0, c > -2 sqrt(b

@@ -165,7 +165,7 @@ class ShapeMaker {
 
   // Only reserves what the grid of a sheet or a net needs, which then can be made.
   Result<CheckedShape> check() {
-    if (surface_.maps.empty() &&
+    if (surface_.maps.empty() && surface_.holds.empty() &&
         (is_plain_sheet(surface_) || std::holds_alternative<NurbsNet>(surface_.shape))) {
       if (auto taken = take_bytes(std::visit(BytesToMake{surface_}, surface_.shape)); !taken)
         return fail(taken.error());
@@ -191,6 +191,7 @@ class ShapeMaker {
                     .grid = made->grid};
     shape.weights = std::make_shared<const VertexWeights>(std::move(made->weights));
     if (auto added = add_maps(shape); !added) return fail(added.error());
+    if (auto added = add_holds(shape); !added) return fail(added.error());
     return shape;
   }
 
@@ -209,6 +210,7 @@ class ShapeMaker {
     }
     if (auto sound = check_as_surface(*shape); !sound) return fail(sound.error());
     if (auto added = add_maps(*shape); !added) return fail(added.error());
+    if (auto added = add_holds(*shape); !added) return fail(added.error());
     if (!surface_.subdivision) return shape;
     return subdivided(*std::move(shape), memory_.bytes());
   }
@@ -284,6 +286,17 @@ class ShapeMaker {
     // By a ratio each node is damped by its own density.
     if (surface_.material.damping_ratio) factors->damping = factors->density;
     shape.factors = std::make_shared<const NodeFactors>(*std::move(factors));
+    return {};
+  }
+
+  Result<void> add_holds(RestShape& shape) {
+    if (surface_.holds.empty() || surface_.is_driven()) return {};
+    auto held = read_holds(
+        surface_, shape, origin_,
+        [&](std::size_t bytes) { return take_bytes(memory_.bytes() + bytes); },
+        context_.should_stop);
+    if (!held) return fail(held.error());
+    shape.held = std::make_shared<const NodeMarks>(*std::move(held));
     return {};
   }
 
@@ -404,10 +417,10 @@ Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettin
     auto tree = PointTree::make(shape.surface->rest, context.should_stop);
     if (!tree) return fail(tree.error());
     return std::make_unique<TriangleBody>(shape.surface, *std::move(tree), settings, solver,
-                                          std::move(context), shape.factors);
+                                          std::move(context), shape.factors, shape.held);
   }
   return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
-                                    shape.factors, shape.faces);
+                                    shape.factors, shape.held, shape.faces);
 }
 
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,

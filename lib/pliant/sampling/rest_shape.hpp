@@ -49,6 +49,9 @@ struct RestShape {
   /// The factors of the material's maps at the nodes; null: there is no map.
   std::shared_ptr<const NodeFactors> factors = {};
 
+  /// 1 for each node that a <hold> holds (#nodes); null: none does.
+  std::shared_ptr<const NodeMarks> held = {};
+
   /// Vertices of a net or a cage as weighted sums of nodes; null: each moves as its node.
   std::shared_ptr<const VertexWeights> weights = {};
   std::shared_ptr<const TriangleSurface> cage = {};  ///< the triangles of a cage that is a grid

@@ -15,10 +15,10 @@
 namespace pliant {
 namespace {
 
-// The first node of a piece that neither a border holds nor a goal; none: all are held. `goals`:
-// the factors of the nodes; null: there is no goal.
+// The first node of a piece that neither a border holds nor held nodes or a goal do; none: all are
+// held. `goals`: the factors of the nodes; null: there is no goal. `held` null: no node is.
 std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
-                              const std::vector<double>* goals) {
+                              const std::vector<double>* goals, const NodeMarks* held) {
   const std::vector<int> pieces = pieces_of(surface);
   std::vector<bool> is_held(pieces.size());  // by piece
   for (int face = 0; face < surface.face_count() && border_holds; ++face) {
@@ -26,9 +26,10 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
         surface.edges_of(face), [&](int edge) { return surface.edge_sides[edge] == 1; });
     if (has_border) is_held[pieces[surface.nodes_of(face).front()]] = true;
   }
-  std::vector<std::vector<int>> pulled(goals ? pieces.size() : 0);  // by piece
-  for (int node = 0; goals && node < surface.node_count(); ++node) {
-    if (pieces[node] >= 0 && factor_at(*goals, node) > 0) pulled[pieces[node]].push_back(node);
+  std::vector<std::vector<int>> pulled(goals || held ? pieces.size() : 0);  // by piece
+  for (int node = 0; !pulled.empty() && node < surface.node_count(); ++node) {
+    const bool is_pulled = (goals && factor_at(*goals, node) > 0) || (held && (*held)[node] != 0);
+    if (pieces[node] >= 0 && is_pulled) pulled[pieces[node]].push_back(node);
   }
   for (std::size_t piece = 0; piece < pulled.size(); ++piece)
     is_held[piece] = is_held[piece] || are_beyond_line(surface.rest, pulled[piece]);
@@ -36,6 +37,18 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
       std::ranges::find_if(pieces, [&](int piece) { return piece >= 0 && !is_held[piece]; });
   if (loose == pieces.end()) return {};
   return static_cast<int>(loose - pieces.begin());
+}
+
+// That of a whole grid, of which nodes may be held; null: none is.
+Outline outline_of(const Grid& grid, const Edges& edges, const NodeMarks* held) {
+  const Outline whole(grid, edges);
+  if (!held) return whole;
+  InteriorMask mask(held->size(), 0);
+  whole.for_each_run([&](const Outline::Run& run) {
+    for (int node = grid.node(run.i0, run.j); node <= grid.node(run.i1, run.j); ++node)
+      mask[static_cast<std::size_t>(node)] = (*held)[static_cast<std::size_t>(node)] == 0 ? 1 : 0;
+  });
+  return {grid, edges, std::move(mask)};
 }
 
 // SPEC 9, "Whole-body motion".
@@ -50,7 +63,7 @@ std::optional<Error> check_is_held(const Scene& scene, const Surface& surface,
   if (is_by_goal) found = static_frame_of(scene, surface, frames, true);
   if (!found) return {};
   if (shape.grid) {
-    PlateSystem system{Outline(*shape.grid, surface.solver.edges), {}};
+    PlateSystem system{outline_of(*shape.grid, surface.solver.edges, shape.held.get()), {}};
     if (is_by_goal) system.goal = surface.material.goal.at(found->frame)[0];
     system.factors = shape.factors;
     if (is_held(system)) return {};
@@ -59,7 +72,7 @@ std::optional<Error> check_is_held(const Scene& scene, const Surface& surface,
                     has_edges ? "" : "a surface that is closed along u and v");
   }
   const auto node = loose_node(*shape.surface, surface.reading.border != Border::Free,
-                               is_by_goal ? &shape.factors->goal : nullptr);
+                               is_by_goal ? &shape.factors->goal : nullptr, shape.held.get());
   if (!node) return {};
   const auto vertex = std::ranges::find(shape.surface->vertex_nodes, *node);
   const auto index = static_cast<int>(vertex - shape.surface->vertex_nodes.begin());

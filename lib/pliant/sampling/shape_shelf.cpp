@@ -51,6 +51,11 @@ bool is_same(const MaterialMap& a, const MaterialMap& b) {
          std::tie(b.channel, b.file, b.attribute, b.low, b.high, b.values);
 }
 
+bool is_same(const Hold& a, const Hold& b) {
+  return std::tie(a.file, a.attribute, a.above, a.vertices, a.values) ==
+         std::tie(b.file, b.attribute, b.above, b.vertices, b.values);
+}
+
 bool is_same(const MeshReading& a, const MeshReading& b) {
   return std::tie(a.uv, a.wrap, a.unit, a.axis, a.border, a.weld) ==
          std::tie(b.uv, b.wrap, b.unit, b.axis, b.border, b.weld);
@@ -62,6 +67,8 @@ bool has_same_shape(const Surface& a, const Surface& b) {
          is_same(a.reading, b.reading) && a.subdivision == b.subdivision &&
          std::equal(a.maps.begin(), a.maps.end(), b.maps.begin(), b.maps.end(),
                     [](const MaterialMap& x, const MaterialMap& y) { return is_same(x, y); }) &&
+         std::equal(a.holds.begin(), a.holds.end(), b.holds.begin(), b.holds.end(),
+                    [](const Hold& x, const Hold& y) { return is_same(x, y); }) &&
          a.material.damping_ratio.has_value() == b.material.damping_ratio.has_value() &&
          a.solver.reference == b.solver.reference &&
          a.solver.edges.are_clamped() == b.solver.edges.are_clamped();

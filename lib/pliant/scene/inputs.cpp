@@ -33,6 +33,9 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
     for (const MaterialMap& map : surface.maps) {
       if (!map.file.empty()) add(map.file, "a map of the scene", root);
     }
+    for (const Hold& hold : surface.holds) {
+      if (!hold.file.empty()) add(hold.file, "a map of the scene", root);
+    }
     const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
     if (!mesh || !add(mesh->path, "a mesh of the scene", root)) continue;
     const auto opened = OpenFile::open(mesh->path, root);

@@ -105,6 +105,23 @@ struct MaterialMap {
   friend bool operator==(const MaterialMap&, const MaterialMap&) = default;
 };
 
+/// Nodes of a surface that stay where they are; their slopes are free. Those where the value of a
+/// picture, of numbers, of an attribute or of a program, as of a `MaterialMap`, is greater than
+/// `above`; or those of `vertices`. Exactly one of the four is not empty.
+struct Hold {
+  std::string file = {};       ///< as passed to open: .png or .npy
+  std::string attribute = {};  ///< a property of a .ply's vertices, `_NAME` of a glTF, or one of
+                               ///< `Mesh::attributes`
+  double above = 0.5;          ///< [1]
+  /// Numbers from 0 on, in the order of the surface's own file; of a net its points, of a cage its
+  /// vertices.
+  std::vector<int> vertices = {};
+  /// At each node of a sheet or of a net (row by row), or at each vertex of a mesh.
+  std::vector<double> values = {};
+
+  friend bool operator==(const Hold&, const Hold&) = default;
+};
+
 /// A boundary tangent: one number for all of x, y, z, 0 by default, or three numbers. [length/uv]
 using TangentChannel = std::variant<Channel<1>, Channel<3>>;
 
@@ -152,6 +169,7 @@ struct Surface {
   TransformChannels transform = {};
   MaterialChannels material = {};
   std::vector<MaterialMap> maps = {};  ///< at most one of each channel
+  std::vector<Hold> holds = {};        ///< together; not with Reference::None or Combine::Union
   TangentChannels tangents = {};
   SolverSettings solver = {};
 

@@ -50,6 +50,13 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
             "file",
             surface.name, name_of(map.channel));
     }
+    for (std::size_t k = 0; k < surface.holds.size(); ++k) {
+      if (!surface.holds[k].values.empty())
+        return fmt::format(
+            "{}.{} has values of a program, which a scene file cannot contain; write them to a "
+            "file, or give it the vertices",
+            surface.name, name_of_hold(k));
+    }
   }
   for (const Force& force : scene.forces) {
     if (std::holds_alternative<CustomForce>(force.kind))

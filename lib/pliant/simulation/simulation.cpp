@@ -20,7 +20,8 @@ namespace {
 // that.
 Result<CheckedShape> check_shape(const Surface& surface, const Scene& scene,
                                  bool are_channels_sound, const RunContext& context) {
-  if (!surface.is_animated() && surface.maps.empty() && surface.solver.region != SolvedRegion::All)
+  if (!surface.is_animated() && surface.maps.empty() && surface.holds.empty() &&
+      surface.solver.region != SolvedRegion::All)
     return check_rest_shape(surface, scene.origin, context);
   auto made = make_rest_shape(surface, scene.origin, context);
   if (!made) return fail(made.error());

@@ -98,6 +98,7 @@ class HashedValues {
     for (const auto* of_nodes : {&density, &damping, &b, &c, &d, &yield, &hardening, &goal})
       add_bytes(*of_nodes);
   }
+  void add(const NodeMarks& marks) { add_bytes(marks); }
   void add(const PlasticLaw& law) {
     const auto& [yield, hardening] = law;
     add_all(yield, hardening);
@@ -188,6 +189,7 @@ Hash rest_key(const RestShape& shape, const BodySettings& settings, SolverChoice
   if (shape.faces) values.add(*shape.faces);
   values.add(int{shape.factors != nullptr});
   if (shape.factors) values.add(*shape.factors);
+  if (shape.held) values.add(*shape.held);
   values.add(settings);
   values.add(solver);
   // The available solvers decide which sparse solver a choice means.

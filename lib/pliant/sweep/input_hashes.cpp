@@ -22,6 +22,7 @@ std::vector<std::string> names_in(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) {
     names.push_back(surface.cache.path);
     for (const MaterialMap& map : surface.maps) names.push_back(map.file);
+    for (const Hold& hold : surface.holds) names.push_back(hold.file);
     const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
     names.push_back(mesh ? mesh->path : "");
     names.push_back(mesh ? mesh->root : "");

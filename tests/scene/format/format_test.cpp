@@ -177,13 +177,15 @@ std::string scene_around(const std::string& element, const std::string& attribut
                             : element == "nurbs" || element == "knots"
                                 ? net
                                 : begin("grid", " columns=\"3\" rows=\"3\"" + uv) + "/>";
-  const std::string part = element == "map"
-                               ? fmt::format("<material>{}/></material>",
-                                             begin("map", " channel=\"b\" file=\"soft.png\""))
-                           // Edges are those of a whole grid.
-                           : attribute == "edges"    ? begin(element, " region=\"all\"") + "/>"
-                           : parts.contains(element) ? begin(element, "") + "/>"
-                                                     : "";
+  const std::string part =
+      element == "map" ? fmt::format("<material>{}/></material>",
+                                     begin("map", " channel=\"b\" file=\"soft.png\""))
+      : element == "hold"
+          ? begin(element, attribute == "vertices" ? "" : " file=\"pins.png\"") + "/>"
+      // Edges are those of a whole grid.
+      : attribute == "edges"    ? begin(element, " region=\"all\"") + "/>"
+      : parts.contains(element) ? begin(element, "") + "/>"
+                                : "";
   const std::string path =
       fmt::format("{}>{}/><waypoint at=\"1 0 0\"/><waypoint at=\"1 1 0\"/></path>",
                   begin("path", " attribute=\"center\""), begin("waypoint", " at=\"0 0 0\""));
@@ -321,7 +323,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 11);
+  CHECK(examples == 12);
 }
 
 }  // namespace

@@ -526,7 +526,7 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
        {"key.xml:1: the root element cannot be included; a file that is included must contain one "
         "of: "
         "fragment, "
-        "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, "
+        "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, hold, "
         "solver, "
         "point, radial, line, uniform, vortex, noise, inertia, pressure, group, path, falloff, "
         "animate" +

@@ -49,8 +49,10 @@ PlateSystem GridAssembly::unshifted(PlateSystem system) {
   return system;
 }
 
-// A mask has clamped edges, and its material is even but for density and damping.
+// A mask has clamped edges, and its material is even but for density and damping. Around held nodes
+// slopes are free.
 bool GridAssembly::is_stencil() const {
+  if (system_.outline.has_held_nodes()) return false;
   const bool is_even = !(system_.factors && system_.factors->have_stiffness());
   return !system_.outline.mask().empty() || (is_even && system_.outline.edges().are_clamped());
 }

@@ -28,6 +28,14 @@ Outline::Outline(const Grid& grid, InteriorMask mask) : Outline(grid) {
   is_rectangle_ = false;
 }
 
+Outline::Outline(const Grid& grid, const Edges& edges, InteriorMask mask) : Outline(grid, edges) {
+  PLIANT_EXPECTS(mask.size() == static_cast<std::size_t>(grid.node_count()));
+  unknowns_ = static_cast<int>(std::count(mask.begin(), mask.end(), std::uint8_t{1}));
+  mask_ = std::move(mask);
+  is_rectangle_ = false;
+  has_held_nodes_ = true;
+}
+
 bool Outline::holds_all(const Run& nodes) const {
   if (!grid_.is_closed_v && (nodes.j < 1 || nodes.j > grid_.rows - 2)) return false;
   if (mask_.empty()) return grid_.is_closed_u || (nodes.i0 >= inner_.i0 && nodes.i1 <= inner_.i1);
@@ -56,7 +64,7 @@ bool have_same_nodes(const Outline& a, const Outline& b) {
   return a.grid().columns == b.grid().columns && a.grid().rows == b.grid().rows &&
          a.grid().is_closed_u == b.grid().is_closed_u &&
          a.grid().is_closed_v == b.grid().is_closed_v && a.edges() == b.edges() &&
-         a.mask() == b.mask();
+         a.has_held_nodes() == b.has_held_nodes() && a.mask() == b.mask();
 }
 
 Field interior_of(const Outline& outline, const Field& nodes) {

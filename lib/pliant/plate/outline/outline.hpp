@@ -49,6 +49,10 @@ class Outline {
   /// so is the one between them, as for every outline that follows cells.
   Outline(const Grid& grid, InteriorMask mask);
 
+  /// A rectangle, or a ring, of which some nodes are held with their slopes free: a plate of the
+  /// bending energy. `mask` has the others, as far as the edges leave them unknown.
+  Outline(const Grid& grid, const Edges& edges, InteriorMask mask);
+
   const Grid& grid() const { return grid_; }
   const Edges& edges() const { return edges_; }
 
@@ -57,6 +61,7 @@ class Outline {
   bool is_periodic() const { return !grid_.is_open(); }
   const InteriorMask& mask() const { return mask_; }  ///< empty for a rectangle or a ring
   int unknown_count() const { return unknowns_; }
+  bool has_held_nodes() const { return has_held_nodes_; }  ///< those that the mask lacks
 
   /// Whether no node is rim, so that a static plate has no solution.
   bool is_unheld() const { return unknowns_ == grid_.node_count(); }
@@ -114,6 +119,7 @@ class Outline {
   InteriorMask mask_;  // empty: all but the outermost nodes
   int unknowns_ = 0;
   bool is_rectangle_ = true;
+  bool has_held_nodes_ = false;
 };
 
 inline int unknown_count(const Outline& outline) { return outline.unknown_count(); }

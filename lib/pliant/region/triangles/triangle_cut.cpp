@@ -44,11 +44,12 @@ struct Point {
 class Cutting {
  public:
   Cutting(const TriangleSurface& surface, const LevelSet& level_set,
-          const std::vector<bool>& is_border, Border border)
+          const std::vector<bool>& is_border, Border border, std::span<const std::uint8_t> held)
       : surface_(surface),
         level_set_(level_set),
         is_border_(is_border),
         border_(border),
+        held_(held),
         node_points_(level_set.nodes.size(), -1),
         lines_(
             std::make_unique_for_overwrite<int[]>(static_cast<std::size_t>(surface.edge_count()))) {
@@ -202,6 +203,10 @@ class Cutting {
 
   int line_of(int edge) const { return lines_[edge]; }
 
+  bool is_held_at(int node) const {
+    return (border_ != Border::Free && is_border_[node]) || (!held_.empty() && held_[node] != 0);
+  }
+
   // By line; those of a line stay in the order of their cells.
   void sort_joints() {
     std::vector<int> starts(static_cast<std::size_t>(inner_lines_) + 1, 0);
@@ -223,7 +228,7 @@ class Cutting {
       point = static_cast<int>(points.size());
       Point made{.node = std::max(end, -1), .is_free = triangle.phi[k] > 0};
       if (end < 0) made.cut = {.kind = CutPoint::Kind::Centre, .face = -1 - end};
-      const bool is_held = end >= 0 && border_ != Border::Free && is_border_[level_set_.nodes[end]];
+      const bool is_held = end >= 0 && is_held_at(level_set_.nodes[end]);
       made.is_free = made.is_free && !is_held;
       points.push_back(made);
     }
@@ -248,6 +253,7 @@ class Cutting {
   const LevelSet& level_set_;
   const std::vector<bool>& is_border_;
   Border border_;
+  std::span<const std::uint8_t> held_;
   std::vector<int> edges_;        // of each line, as far as lines are edges
   std::vector<int> node_points_;  // the point of each node, -1: none yet
   std::unique_ptr<int[]> lines_;  // of the edges of all faces; the rest is not set
@@ -407,9 +413,10 @@ CutCounts TrianglePatch::counts_of(const std::vector<bool>& within) const {
 Result<std::vector<TrianglePatch>> cut_out(const TriangleSurface& surface,
                                            const LevelSet& level_set,
                                            const std::vector<bool>& is_border, Border border,
-                                           const StopRequest& should_stop) {
+                                           const StopRequest& should_stop,
+                                           std::span<const std::uint8_t> held) {
   StopPoll poll(should_stop);
-  Cutting cutting(surface, level_set, is_border, border);
+  Cutting cutting(surface, level_set, is_border, border, held);
   cutting.run(poll);
   if (poll.after(0)) return interrupted();
   Separating separating(cutting, border);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -44,10 +45,13 @@ struct TrianglePatch {
   int free_nodes = 0;
   std::vector<double> masses;  ///< #free_nodes: its share of the area [length^2]
 
-  bool may_float = false;  ///< whether it moves if nothing is held
-  bool has_goal = false;   ///< a goal holds it where nothing else does
+  bool may_float = false;       ///< whether it moves if nothing is held
+  bool has_rim = true;          ///< what is held of it are not only nodes within
+  bool is_held_within = false;  ///< such nodes hold it, or a goal does
 
-  bool is_held() const { return has_goal || cells.free_points < cells.point_count; }
+  bool is_held() const {
+    return is_held_within || (has_rim && cells.free_points < cells.point_count);
+  }
 
   /// Whether it is solved.
   bool moves() const { return free_nodes > 0 && (may_float || is_held()); }
@@ -70,11 +74,13 @@ std::vector<double> values_at_points(const TrianglePatch& patch, std::span<const
                                      std::span<const double> at_centres);
 
 /// Cuts the region phi >= 0 out of the triangles. `is_border` (#nodes of the surface) marks the
-/// nodes of edges with one face. The patches are in the order of their first cells. Requires:
-/// `level_set` is snapped. Errors: Interrupted. Cost: proportional to the region.
+/// nodes of edges with one face; `held` (#nodes, or empty) those that are held wherever they are.
+/// The patches are in the order of their first cells. Requires: `level_set` is snapped. Errors:
+/// Interrupted. Cost: proportional to the region.
 Result<std::vector<TrianglePatch>> cut_out(const TriangleSurface& surface,
                                            const LevelSet& level_set,
                                            const std::vector<bool>& is_border, Border border,
-                                           const StopRequest& should_stop = {});
+                                           const StopRequest& should_stop = {},
+                                           std::span<const std::uint8_t> held = {});
 
 }  // namespace pliant

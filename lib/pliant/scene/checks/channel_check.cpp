@@ -250,7 +250,8 @@ class ChannelChecker {
   // "Whole-body motion".
   void check_is_held(const Surface& surface) {
     const SolverSettings& solver = surface.solver;
-    if (solver.region != SolvedRegion::All || solver.edges.hold()) return;
+    // What nodes hold is seen once they are known.
+    if (solver.region != SolvedRegion::All || solver.edges.hold() || !surface.holds.empty()) return;
     if (const auto found = static_frame_of(scene_, surface, {first_, last_}))
       errors_.push_back(not_held(scene_, surface, *found, {}));
   }
@@ -308,12 +309,14 @@ Error not_held(const Scene& scene, const Surface& surface, const StaticFrame& at
   const bool has_goal = surface.material.goal.at(at.frame)[0] != 0;
   return scene.origin.located(
       {.code = ErrorCode::InvalidInput,
-       .message =
-           fmt::format("{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
-                       "density or a damping, {}{}",
-                       surface.name, when, what,
-                       has_goal ? "or a goal at nodes that are not in one line" : "or a goal",
-                       is_grid ? ", or a clamped edge or two pinned ones" : "")},
+       .message = fmt::format(
+           "{}.density{} is 0, and so is damping, but nothing holds {}: give it a "
+           "density or a damping, {}{}",
+           surface.name, when, what,
+           !surface.holds.empty() ? "or a <hold> or a goal at nodes that are not in one line"
+           : has_goal             ? "or a goal at nodes that are not in one line"
+                                  : "or a goal",
+           is_grid ? ", or a clamped edge or two pinned ones" : "")},
       scene.origin.last_of(surface.name, {"density", "damping", "goal"}));
 }
 

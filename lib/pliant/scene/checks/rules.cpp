@@ -128,6 +128,7 @@ class WholeChecker {
     check_damping(surface);
     check_yield(surface);
     check_maps(surface);
+    check_holds(surface);
     if (const auto* const net = std::get_if<NurbsNet>(&surface.shape)) check(surface, *net);
     const auto* const sheet = std::get_if<GridSheet>(&surface.shape);
     if (!sheet) return;
@@ -323,6 +324,57 @@ class WholeChecker {
             fmt::format("{}: a map of b, c or d needs rectangles, but {}.combine is \"union\"; "
                         "\"box\" and \"islands\" have them",
                         name, surface.name));
+    }
+  }
+
+  void check_holds(const Surface& surface) {
+    const bool has_vertices = std::holds_alternative<MeshFile>(surface.shape) ||
+                              std::holds_alternative<Mesh>(surface.shape);
+    for (std::size_t k = 0; k < surface.holds.size(); ++k) {
+      const Hold& hold = surface.holds[k];
+      const std::string part = name_of_hold(k), name = fmt::format("{}.{}", surface.name, part);
+      if (!is_sound(name, "file") || !is_sound(name, "attribute") || !is_sound(name, "vertices"))
+        continue;
+      const auto refuse = [&](const char* attribute, std::string_view reason) {
+        complain(name, attribute, fmt::format("{}: {}", name, reason));
+      };
+      check_ranges(name, hold);
+      const bool has_file = !hold.file.empty(), has_attribute = !hold.attribute.empty();
+      const bool has_above = hold.above != Hold().above || scene_.origin.gives(name, "above");
+      const int sources = has_file + has_attribute + !hold.vertices.empty() + !hold.values.empty();
+      if (sources == 0) refuse("", "a hold needs a file, an attribute or vertices");
+      if (!hold.vertices.empty() && (sources > 1 || has_above))
+        refuse("vertices", fmt::format("a hold of vertices has no {}", has_file        ? "file"
+                                                                       : has_attribute ? "attribute"
+                                                                       : has_above     ? "\"above\""
+                                                                                       : "values"));
+      else if (sources > 1)
+        refuse("attribute", "a hold has a file or an attribute, but this one has both");
+      const std::string ending = ending_of(hold.file);
+      if (has_file && ending != ".png" && ending != ".npy")
+        refuse("file", fmt::format("the file is {}, but its name must end in .png or .npy",
+                                   in_quotes(hold.file)));
+      if (sources == 1 && has_attribute && !has_vertices)
+        refuse("attribute", fmt::format("the attribute {} is one of a mesh's vertices, but the "
+                                        "surface is no <mesh> and no <subdivision>",
+                                        in_quotes(hold.attribute)));
+      const auto conflict = [&](const char* attribute, std::string_view reason) {
+        findings_.add_problem(scene_.origin.last_of(surface.name, {part, attribute}),
+                              fmt::format("{}: {}", name, reason));
+      };
+      if (surface.solver.combine == Combine::Union)
+        conflict("combine",
+                 fmt::format("a <hold> needs rectangles, but {}.combine is \"union\"; \"box\" and "
+                             "\"islands\" have them",
+                             surface.name));
+      if (surface.solver.reference == Reference::None)
+        conflict("reference",
+                 fmt::format("a node is held at its place at rest, but {}.reference is "
+                             "\"none\", which has none",
+                             surface.name));
+      if (surface.is_driven() && scene_.origin.file.empty())
+        refuse("", fmt::format("{} is driven by {} and has no <hold>", surface.name,
+                               in_quotes(surface.driven_by)));
     }
   }
 

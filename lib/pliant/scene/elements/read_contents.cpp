@@ -38,6 +38,7 @@ class ContentsReader {
   std::vector<ChildReader> child_readers();
   void read_child(const Element& child, ChildPlace& place);
   void read_unique(const Element& child, ChildPlace& place);
+  void read_listed(const Element& child, ChildPlace& place);
   void read_falloff(const Element& child);
   void read_text();
   void refuse_excluded();
@@ -62,6 +63,7 @@ class ContentsReader {
   std::string name_;
   TextPlace falloff_;
   std::map<std::pair<std::string_view, std::string>, TextPlace> unique_;  // by their key
+  std::map<std::string_view, int> listed_;  // how many elements without a name were read
 };
 
 std::string ContentsReader::title() const {
@@ -135,8 +137,23 @@ void ContentsReader::read_child(const Element& child, ChildPlace& place) {
   if (!place.first.is_known()) place.first = child.place();
   if (!place.row.unique_by.empty()) return read_unique(child, place);
   if (place.part) return read_contents(child, *place.part, owner_, file_);
+  if (place.row.most > 1) return read_listed(child, place);
   Contents contents = place.kinds.add(child.name());
   read_contents(child, contents, owner_, file_);
+}
+
+/// Reads one of a list. What has no name is told apart by its number.
+void ContentsReader::read_listed(const Element& child, ChildPlace& place) {
+  Contents contents = place.kinds.add(child.name());
+  const bool is_named = std::ranges::any_of(
+      contents.attributes, [](const Slot& slot) { return slot.attribute.syntax == Syntax::Name; });
+  if (is_named || owner_.empty()) return read_contents(child, contents, owner_, file_);
+  ContentsReader reader(
+      child, contents, fmt::format("{}.{}", path_of(child.name()), listed_[child.name()]++), file_);
+  reader.name_place(reader.owner_);
+  reader.read_own_attributes();
+  if (std::ranges::all_of(contents.attributes, &Slot::is_sound)) reader.locate_files();
+  reader.read_rest();
 }
 
 /// Reads an element of which there may be one for each value of an attribute.

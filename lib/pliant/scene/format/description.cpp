@@ -36,4 +36,6 @@ std::string name_of(MapChannel channel) {
   return "map." + std::string(map_channel_words[static_cast<std::size_t>(channel)]);
 }
 
+std::string name_of_hold(std::size_t number) { return fmt::format("hold.{}", number); }
+
 }  // namespace pliant

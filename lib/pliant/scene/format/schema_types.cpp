@@ -136,6 +136,7 @@ std::string body_of(const AttributeFormat& attribute, KeyValues values) {
   const auto words = attribute.words;
   if (type == "number") return number_body(attribute.limits);
   if (type == "integer") return integer_body(attribute);
+  if (type == "integers") return list_of(integer_body(attribute), "<xs:minLength value=\"1\"/>");
   if (type == "boolean") return boolean_body;
   if (type == "word") return words_body(words);
   if (type == "vector") return vector_body(attribute.limits);

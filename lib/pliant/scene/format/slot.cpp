@@ -37,6 +37,7 @@ struct TypeName {
     return attribute.syntax == Syntax::Path ? "path" : "text";
   }
   std::string_view operator()(const std::vector<std::string>*) const { return "names"; }
+  std::string_view operator()(const std::vector<int>*) const { return "integers"; }
   std::string_view operator()(const Value<2>*) const { return "one or two numbers"; }
   std::string_view operator()(const Value<3>*) const { return "vector"; }
   std::string_view operator()(const Channel<1>*) const { return "number"; }
@@ -96,6 +97,9 @@ struct ValueText {
   }
   std::string operator()(const std::string* place) const { return *place; }
   std::string operator()(const std::vector<std::string>* place) const {
+    return fmt::format("{}", fmt::join(*place, " "));
+  }
+  std::string operator()(const std::vector<int>* place) const {
     return fmt::format("{}", fmt::join(*place, " "));
   }
   std::string operator()(const Value<2>* place) const {
@@ -204,6 +208,17 @@ struct ReadValue {
       if (!seen.insert(word).second) return refused(in_quotes(word) + " is given twice");
     }
     place->assign(words.begin(), words.end());
+    return {};
+  }
+  Checked<void> operator()(std::vector<int>* place) const {
+    std::vector<int> numbers;
+    for (const std::string_view word : words_of(text)) {
+      if (Checked<void> read = ReadValue{attribute, word}(&numbers.emplace_back()); !read)
+        return refused(fmt::format("{}: {}", in_quotes(word), read.error().message));
+    }
+    if (numbers.empty())
+      return refused(fmt::format("is empty; leave the attribute out for {}", attribute.absent));
+    *place = std::move(numbers);
     return {};
   }
   /// One number for both, or two.

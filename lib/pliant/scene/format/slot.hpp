@@ -28,7 +28,7 @@ struct Choice {
 using Place =
     std::variant<std::monostate, double*, std::optional<double>*, int*, std::optional<int>*,
                  std::uint64_t*, std::optional<std::uint64_t>*, bool*, Choice, std::string*,
-                 std::vector<std::string>*, Value<3>*, std::optional<Value<3>>*,
+                 std::vector<std::string>*, std::vector<int>*, Value<3>*, std::optional<Value<3>>*,
                  std::optional<Value<2>>*, Channel<1>*, Channel<3>*, std::optional<Channel<1>>*,
                  std::optional<Channel<3>>*, PositionChannel*, TangentChannel*, Switch*, Edges*>;
 

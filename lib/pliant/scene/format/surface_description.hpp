@@ -42,8 +42,9 @@ template <>
 struct Description<Surface> {
   static constexpr std::string_view element = "surface";
   static constexpr std::string_view meaning =
-      "An elastic surface: one shape, and at most one each of transform, material, tangents and "
-      "solver.";
+      "An elastic surface: one shape, at most one each of transform, material, tangents and "
+      "solver, "
+      "and any number of holds.";
   static constexpr bool may_include = true;
 
   template <class Row, class... Of>
@@ -64,6 +65,7 @@ struct Description<Surface> {
     child(Child{.is_of_driven = true}, surface.transform);
     child(Child{}, MaterialOf<Of>{surface});
     child(Child{}, surface.tangents);
+    child(Child{.most = unlimited}, surface.holds);
     child(Child{}, surface.solver);
   }
 };
@@ -198,6 +200,41 @@ struct Description<MaterialMap> {
         of.high...);
   }
 };
+
+template <>
+struct Description<Hold> {
+  static constexpr std::string_view element = "hold";
+  static constexpr std::string_view meaning =
+      "Nodes that stay where they are; several add up. Their slopes are free.";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(Attribute{.name = "file",
+                  .meaning = "picture (`.png`) or numbers of a grid's nodes (`.npy`), as of a map, "
+                             "relative to the scene file",
+                  .absent = "none: an attribute, or vertices",
+                  .syntax = Syntax::Path},
+        of.file...);
+    row(Attribute{.name = "attribute",
+                  .meaning = "vertex property of a `.ply`, or `_NAME` of a glTF",
+                  .absent = "none: a file, or vertices"},
+        of.attribute...);
+    row(Attribute{.name = "above",
+                  .meaning = "nodes are held where the value of the file or attribute is greater",
+                  .unit = "1"},
+        of.above...);
+    row(Attribute{.name = "vertices",
+                  .meaning = "in place of a file or attribute: the vertices whose nodes are held, "
+                             "counted from 0 in every format; of a net its points, of a cage its "
+                             "vertices",
+                  .range = {.least = 0},
+                  .absent = "none: a file, or an attribute"},
+        of.vertices...);
+  }
+};
+
+/// The name of a hold among the parts of its surface, counted from 0: `hold.0`.
+std::string name_of_hold(std::size_t number);
 
 /// The unit of boundary tangents.
 inline constexpr std::string_view edge_slope = "length/uv";
