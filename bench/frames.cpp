@@ -274,9 +274,10 @@ void print_normals_and_follow(const Options& options) {
     return typical(times, options.is_least) * 1e3;
   };
   const double plain = loads_of(uniform), along = loads_of(pressure);
-  fmt::print("\nload of one force on {} x {} vertices, ms\nuniform {:.2f}, pressure {:.2f}, "
-             "normals {:.2f}\n",
-             side, side, plain, along, along - plain);
+  fmt::print(
+      "\nload of one force on {} x {} vertices, ms\nuniform {:.2f}, pressure {:.2f}, "
+      "normals {:.2f}\n",
+      side, side, plain, along, along - plain);
   // A force that follows by a transform, sampled again and again.
   Scene scene = make_scene(51);
   const auto sampled = [&] {
