@@ -40,12 +40,20 @@ bool changes(const Surface& surface) {
          material.d.is_animated();
 }
 
+// What carries the forces on a shape. Most scenes follow nothing, and have very many forces.
+std::shared_ptr<const Carriers> carriers_of(const Scene& scene, const RestShape* shape) {
+  static const auto nothing = std::make_shared<const Carriers>(Scene());
+  if (!shape) return std::make_shared<const Carriers>(scene);
+  return shape->carriers ? shape->carriers : nothing;
+}
+
 // Whether what a force or group follows moves.
 template <class Follower>
 bool is_carried(const Scene& scene, const Follower& follower) {
-  return std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
-    return surface.name == follower.follow && moves(surface);
-  });
+  return !follower.follow.empty() &&
+         std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
+           return surface.name == follower.follow && moves(surface);
+         });
 }
 
 bool changes(const Scene& scene, const Force& force) {
@@ -67,8 +75,7 @@ ActingForces::ActingForces(const Scene& scene, const Surface& surface,
       surface_(surface),
       forces_(std::move(forces)),
       animation_(shape ? shape->animation : nullptr),
-      carriers_(shape && shape->carriers ? shape->carriers
-                                         : std::make_shared<const Carriers>(scene)) {
+      carriers_(carriers_of(scene, shape)) {
   std::map<std::string_view, const Group*> named;
   for (const std::size_t group : groups)
     named.emplace(scene.groups[group].name, &scene.groups[group]);

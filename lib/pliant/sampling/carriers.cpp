@@ -150,7 +150,8 @@ Result<std::shared_ptr<const Carriers>> Carriers::make(
     const StopRequest& should_stop) {
   auto made = std::make_shared<Carriers>(scene);
   if (made->carriers_.empty()) return nullptr;
-  for (auto& [name, carrier] : made->carriers_) {
+  for (auto& entry : made->carriers_) {
+    Carrier& carrier = entry.second;
     const Surface& surface = scene.surfaces[carrier.surface];
     const RestShape& shape = shapes[carrier.surface];
     if (!shape.animation) continue;
@@ -158,8 +159,9 @@ Result<std::shared_ptr<const Carriers>> Carriers::make(
       if (error.code == ErrorCode::Interrupted) return fail(error);
       return fail(scene.origin.located(
           {.code = error.code,
-           .message = fmt::format("surface \"{}\" cannot be followed: {}", name, error.message)},
-          scene.origin.at(name)));
+           .message =
+               fmt::format("surface \"{}\" cannot be followed: {}", surface.name, error.message)},
+          scene.origin.at(surface.name)));
     };
     const auto triangles = triangles_of(surface, shape, should_stop);
     if (!triangles) return refuse(triangles.error());

@@ -111,7 +111,7 @@ class MapReader {
 
   Result<std::vector<double>> of_npy(const std::string& bytes, const std::string& file) const {
     if (const auto* const sheet = std::get_if<GridSheet>(&surface_.shape)) {
-      const auto values = parse_npy_grid(bytes, file, sheet->columns, sheet->rows, should_stop_);
+      auto values = parse_npy_grid(bytes, file, sheet->columns, sheet->rows, should_stop_);
       if (!values || shape_.grid) return values;
       return of_vertices(*values, "the map");
     }

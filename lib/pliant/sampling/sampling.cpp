@@ -29,7 +29,7 @@ class Followed {
 
   // The place in the world. Directions turn with the first place that is asked for.
   Vector3d place(const PositionChannel& channel) {
-    const Vector3d place = to_vector(channel.at(frame_));
+    Vector3d place = to_vector(channel.at(frame_));
     if (surface_.empty()) return place;
     auto carried = carriers_.carry(scene_, surface_, place, frame_);
     if (!carried) {
@@ -41,7 +41,7 @@ class Followed {
   }
 
   Vector3d direction(const Channel<3>& channel) const {
-    const Vector3d direction = to_vector(channel.at(frame_));
+    Vector3d direction = to_vector(channel.at(frame_));
     if (!first_) return direction;
     return to_world({first_->directions, Vector3d::Zero()}, direction);
   }

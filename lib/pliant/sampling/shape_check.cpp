@@ -41,7 +41,7 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
 
 // That of a whole grid, of which nodes may be held; null: none is.
 Outline outline_of(const Grid& grid, const Edges& edges, const NodeMarks* held) {
-  const Outline whole(grid, edges);
+  Outline whole(grid, edges);
   if (!held) return whole;
   InteriorMask mask(held->size(), 0);
   whole.for_each_run([&](const Outline::Run& run) {
