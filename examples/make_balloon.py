@@ -4,9 +4,9 @@
     python3 make_balloon.py [-o balloon.obj]
 """
 
-import argparse
 import math
-import pathlib
+
+import obj_file
 
 RINGS, AROUND = 26, 36  # ring k from the top, the poles apart
 WIDTH, HEIGHT = 1.0, 1.3
@@ -46,15 +46,7 @@ def balloon():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path(__file__).with_name("balloon.obj"))
-    vertices, faces = balloon()
-    with parser.parse_args().out.open("w", encoding="utf-8") as file:
-        file.write("o balloon\n")
-        for vertex in vertices:
-            file.write("v " + " ".join(f"{x:.5f}" for x in vertex) + "\n")
-        for face in faces:
-            file.write("f " + " ".join(str(corner + 1) for corner in face) + "\n")
+    obj_file.write(obj_file.chosen_file(__file__, __doc__), "balloon", *balloon())
 
 
 if __name__ == "__main__":

@@ -5,9 +5,9 @@ around the navel, without UVs.
     python3 make_belly.py [-o belly.obj]
 """
 
-import argparse
 import math
-import pathlib
+
+import obj_file
 
 RINGS = 15  # ring k has 6 k vertices
 WIDTH, HEIGHT, DEPTH = 1.5, 1.75, 1.35
@@ -43,15 +43,7 @@ def belly():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path(__file__).with_name("belly.obj"))
-    vertices, faces = belly()
-    with parser.parse_args().out.open("w", encoding="utf-8") as file:
-        file.write("o belly\n")
-        for vertex in vertices:
-            file.write("v " + " ".join(f"{x:.5f}" for x in vertex) + "\n")
-        for face in faces:
-            file.write("f " + " ".join(str(corner + 1) for corner in face) + "\n")
+    obj_file.write(obj_file.chosen_file(__file__, __doc__), "belly", *belly())
 
 
 if __name__ == "__main__":

@@ -5,10 +5,10 @@ a few steps, from one foot to the other, until it stands.
     python3 make_penguin.py [-o penguin.obj]
 """
 
-import argparse
 import math
-import pathlib
 import struct
+
+import obj_file
 
 RINGS, AROUND = 16, 20
 FRAMES, STEP = 40, 8  # a step takes 8 frames
@@ -77,16 +77,9 @@ def walked(place, frame):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path(__file__).with_name("penguin.obj"))
-    out = parser.parse_args().out
+    out = obj_file.chosen_file(__file__, __doc__)
     places = at_rest()
-    with out.open("w", encoding="utf-8") as file:
-        file.write("o penguin\n")
-        for place in places:
-            file.write("v " + " ".join(f"{x:.5f}" for x in place) + "\n")
-        for face in faces():
-            file.write("f " + " ".join(str(corner + 1) for corner in face) + "\n")
+    obj_file.write(out, "penguin", places, faces())
     with out.with_suffix(".pc2").open("wb") as file:
         file.write(struct.pack("<12siiffi", b"POINTCACHE2\0", 1, len(places), 1.0, 1.0, FRAMES))
         for frame in range(FRAMES):
