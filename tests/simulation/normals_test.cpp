@@ -91,6 +91,18 @@ TEST_CASE("normals are those of the faces around a node, in the world", "[simula
   }
 }
 
+TEST_CASE("a face that is left with fewer than three nodes has none", "[simulation][normals]") {
+  const Mesh mesh = mesh_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 2, 3}, {5, 5, 5}},
+                            {{0, 1, 2}, {0, 3, 4}, {1, 4, 3}, {0, 1, 3, 2}});
+  const auto faces = node_faces(mesh, {0, 1, 2, -1, -1}, 3).value();
+  CHECK(faces.face_count() == 4);
+  CHECK(faces.faces_of(1).size() == 2);
+  for (int node = 0; node < 3; ++node) {
+    const Vector3d normal = normal_at(faces, mesh.positions, Matrix3d::Identity(), node);
+    CHECK(normal == Vector3d(0, 1, 0));
+  }
+}
+
 TEST_CASE("a node whose faces cancel each other has no normal", "[simulation][normals]") {
   // Two triangles back to back, and a third one that is larger than rounding by chance.
   for (const double third : {0.0, 1e-13, 1e-3}) {

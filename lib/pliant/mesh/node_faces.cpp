@@ -54,6 +54,8 @@ Result<NodeFaces> node_faces(const Mesh& mesh, const std::vector<int>& vertex_no
       const int node = vertex_nodes[static_cast<std::size_t>(mesh.corner_vertices[corner++])];
       if (node >= 0) faces.corner_nodes.push_back(node);
     }
+    const auto first = static_cast<std::size_t>(faces.face_starts.back());
+    if (faces.corner_nodes.size() < first + 3) faces.corner_nodes.resize(first);
     faces.face_starts.push_back(static_cast<int>(faces.corner_nodes.size()));
   }
   list_faces_of_nodes(faces, node_count, poll);

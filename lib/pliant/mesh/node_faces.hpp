@@ -30,10 +30,11 @@ struct NodeFaces {
   }
 };
 
-/// Lists the faces of each node; what they were is lost. Unfinished if it is stopped.
+/// Lists the faces of each node from the nodes of each face. Unfinished if it is stopped.
 void list_faces_of_nodes(NodeFaces& faces, int node_count, StopPoll& poll);
 
-/// The faces of a mesh with the node of each vertex. Errors: Interrupted.
+/// The faces of a mesh with the node of each vertex, -1: none; one with fewer than three nodes has
+/// none. Errors: Interrupted.
 Result<NodeFaces> node_faces(const Mesh& mesh, const std::vector<int>& vertex_nodes, int node_count,
                              const StopRequest& should_stop = {});
 
