@@ -21,30 +21,15 @@ namespace {
 
 constexpr Edges all_free = {Edge::Free, Edge::Free, Edge::Free, Edge::Free};
 
-Surface whole(Mesh mesh, Border border = Border::Clamped) {
-  Surface surface;
-  surface.name = "s";
-  surface.shape = std::move(mesh);
-  surface.reading.uv = UvReading::Surface;
-  if (border != Border::Clamped) surface.reading.border = border;
-  surface.material.density = 0.02;
-  surface.material.damping = 0.02;
-  surface.solver.region = SolvedRegion::All;
-  return surface;
-}
-
 Surface free_sheet() {
-  Surface surface = sheet("s");
-  surface.material.density = 0.02;
-  surface.material.damping = 0.02;
-  surface.solver.region = SolvedRegion::All;
+  Surface surface = light(sheet("s"));
   surface.solver.edges = all_free;
   return surface;
 }
 
 // Surfaces that nothing holds.
 std::vector<Surface> loose() {
-  return {whole(sphere(2)), whole(square(7, 6, 0.3), Border::Free), free_sheet()};
+  return {light_skin(sphere(2)), light_skin(square(7, 6, 0.3), Border::Free), free_sheet()};
 }
 
 Force wind(double magnitude) {
@@ -109,7 +94,7 @@ TEST_CASE("a map of ones is a goal without a map", "[simulation][goal]") {
   surfaces.push_back(sheet("s"));
   surfaces.back().material.density = 0.02;
   surfaces.back().material.damping = 0.02;
-  surfaces.push_back(whole(square(7, 6, 0.3)));
+  surfaces.push_back(light_skin(square(7, 6, 0.3)));
   for (Surface surface : surfaces) {
     surface.material.goal = curve({{1, 1}, {8, 40}});
     const Scene even = scene({surface}, {poke("p", {0.4, 0, -0.3}, 60)});
@@ -126,7 +111,7 @@ TEST_CASE("a map of ones is a goal without a map", "[simulation][goal]") {
 TEST_CASE("a goal pulls where its map is not 0, and holds back what it pulls",
           "[simulation][goal]") {
   // The stronger it is, the nearer to rest; the other half moves on.
-  for (Surface surface : {free_sheet(), whole(square(8, 6, 0), Border::Free)}) {
+  for (Surface surface : {free_sheet(), light_skin(square(8, 6, 0), Border::Free)}) {
     surface.maps = {goal_map(surface, [](const Vector3d& p) { return p.x() < -1 ? 1 : 0; })};
     double before = 1e300;
     for (const double goal : {0.1, 10.0, 1e3, 1e5}) {
@@ -148,7 +133,8 @@ TEST_CASE("a goal pulls where its map is not 0, and holds back what it pulls",
 }
 
 TEST_CASE("a static body needs a goal at nodes that are not in one line", "[simulation][goal]") {
-  for (Surface surface : {free_sheet(), whole(square(8, 6, 0), Border::Free), whole(sphere(1))}) {
+  for (Surface surface :
+       {free_sheet(), light_skin(square(8, 6, 0), Border::Free), light_skin(sphere(1))}) {
     surface.material.goal = 3;
     const bool is_ball =
         std::get_if<Mesh>(&surface.shape) && std::get<Mesh>(surface.shape).positions.rows() == 42;
@@ -173,7 +159,7 @@ TEST_CASE("a static body needs a goal at nodes that are not in one line", "[simu
 }
 
 TEST_CASE("a piece within a sphere moves if a goal holds it", "[simulation][goal]") {
-  Surface ball = whole(sphere(2));
+  Surface ball = light_skin(sphere(2));
   ball.solver.region = SolvedRegion::Forces;
   Force push = wind(0.3);
   push.kind = PointChannels{};
@@ -236,7 +222,7 @@ TEST_CASE("a damping ratio counts with a goal", "[simulation][goal]") {
 }
 
 TEST_CASE("a loop closes about the place of a goal", "[simulation][goal]") {
-  Surface ball = whole(sphere(1));
+  Surface ball = light_skin(sphere(1));
   ball.material.goal = 4;
   ball.material.damping = 0.2;
   ball.solver.loop = 12;

@@ -24,23 +24,8 @@ constexpr Edges no_edges = {Edge::Free, Edge::Free, Edge::Free, Edge::Free};
 constexpr Edges pinned_edges = {Edge::Pinned, Edge::Pinned, Edge::Pinned, Edge::Pinned};
 
 Surface plate(int count = 13) {
-  Surface surface = sheet("s", count);
-  surface.material.density = 0.02;
-  surface.material.damping = 0.02;
-  surface.solver.region = SolvedRegion::All;
+  Surface surface = light(sheet("s", count));
   surface.solver.edges = no_edges;
-  return surface;
-}
-
-Surface skin(Mesh mesh, Border border) {
-  Surface surface;
-  surface.name = "s";
-  surface.shape = std::move(mesh);
-  surface.reading.uv = UvReading::Surface;
-  if (border != Border::Clamped) surface.reading.border = border;
-  surface.material.density = 0.02;
-  surface.material.damping = 0.02;
-  surface.solver.region = SolvedRegion::All;
   return surface;
 }
 
@@ -115,8 +100,8 @@ TEST_CASE("holds on the whole border of a free sheet are pinned edges", "[simula
 
 TEST_CASE("holds on the whole border of a free mesh are a pinned border", "[simulation][hold]") {
   for (const bool has_quads : {false, true}) {
-    const Surface pinned = skin(square(8, 6, 0.25, has_quads), Border::Pinned);
-    Surface held = skin(square(8, 6, 0.25, has_quads), Border::Free);
+    const Surface pinned = light_skin(square(8, 6, 0.25, has_quads), Border::Pinned);
+    Surface held = light_skin(square(8, 6, 0.25, has_quads), Border::Free);
     held.material.poisson = 0.0;
     held.holds = {hold_of(where(
         held, [](const Vector3d& p) { return std::abs(p.x()) > 2.99 || std::abs(p.z()) > 2.99; }))};
@@ -131,13 +116,13 @@ TEST_CASE("a held node keeps its place to the bit", "[simulation][hold]") {
   clamped.solver.edges = {};
   Surface recovering = local;
   recovering.solver.release = Release::Recover;
-  Surface cut = skin(square(12, 10, 0.2), Border::Clamped);
+  Surface cut = light_skin(square(12, 10, 0.2), Border::Clamped);
   cut.solver.region = SolvedRegion::Forces;
   Surface moving = plate();
   moving.transform.translate = vector_curve({{1, {0, 0, 0}}, {6, {0, 2, 1}}});
   for (Surface surface :
-       {local, clamped, recovering, plate(), moving, cut, skin(square(8, 10, 0.2), Border::Free),
-        skin(sphere(2), Border::Clamped)}) {
+       {local, clamped, recovering, plate(), moving, cut,
+        light_skin(square(8, 10, 0.2), Border::Free), light_skin(sphere(2), Border::Clamped)}) {
     for (const Integrator integrator :
          {Integrator::BackwardEuler, Integrator::Newmark, Integrator::Exact}) {
       surface.solver.integrator = integrator;
@@ -165,7 +150,7 @@ TEST_CASE("a held node is one with an endless goal", "[simulation][hold][goal]")
   Surface local = sheet("s");
   local.material.density = 0.02;
   local.material.damping = 0.02;
-  for (Surface surface : {local, plate(), skin(square(8, 10, 0.2), Border::Free)}) {
+  for (Surface surface : {local, plate(), light_skin(square(8, 10, 0.2), Border::Free)}) {
     std::vector<int> vertices = {40, 41, 27, 66};
     Surface pulled = surface;
     surface.holds = {hold_of(vertices)};
@@ -193,14 +178,14 @@ TEST_CASE("a region without a held node inside has the bits of before", "[simula
 }
 
 TEST_CASE("what is held everywhere is not solved", "[simulation][hold]") {
-  for (Surface surface : {sheet("s"), plate(), skin(square(6, 6, 0.2), Border::Free)}) {
+  for (Surface surface : {sheet("s"), plate(), light_skin(square(6, 6, 0.2), Border::Free)}) {
     surface.holds = {hold_of(where(surface, [](const Vector3d&) { return true; }))};
     CHECK(peak(baked(scene({surface}, {blow(300)}), "s")) == 0);
   }
 }
 
 TEST_CASE("static surfaces need held nodes that are not in one line", "[simulation][hold]") {
-  for (Surface surface : {plate(), skin(square(12, 12, 0), Border::Free)}) {
+  for (Surface surface : {plate(), light_skin(square(12, 12, 0), Border::Free)}) {
     surface.material.density = surface.material.damping = 0;
     const auto with = [&](std::vector<int> vertices) {
       surface.holds = {hold_of(std::move(vertices))};
@@ -306,7 +291,7 @@ TEST_CASE("a net holds its points", "[simulation][hold]") {
 }
 
 TEST_CASE("a cage holds its vertices", "[simulation][hold]") {
-  Surface cage = skin(square(4, 4, 0), Border::Free);
+  Surface cage = light_skin(square(4, 4, 0), Border::Free);
   cage.subdivision.emplace();
   cage.subdivision->levels = 1;
   if (!Simulation::make(scene({cage}, {}))) return;  // a build without OpenSubdiv

@@ -63,6 +63,24 @@ inline Surface sheet(const std::string& name, int count = 13) {
   return surface;
 }
 
+/// A surface that is solved as a whole, and is light enough to swing fast.
+inline Surface light(Surface surface) {
+  surface.material.density = 0.02;
+  surface.material.damping = 0.02;
+  surface.solver.region = SolvedRegion::All;
+  return surface;
+}
+
+/// A mesh as such a surface of triangles.
+inline Surface light_skin(Mesh mesh, Border border = Border::Clamped) {
+  Surface surface;
+  surface.name = "s";
+  surface.shape = std::move(mesh);
+  surface.reading.uv = UvReading::Surface;
+  if (border != Border::Clamped) surface.reading.border = border;
+  return light(surface);
+}
+
 inline Force poke(const std::string& name, const Value<3>& center, double magnitude = 5000) {
   Force force;
   force.name = name;

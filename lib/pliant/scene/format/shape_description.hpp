@@ -20,6 +20,17 @@ inline constexpr std::string_view use_surface = "uv=\"surface\" solves on the me
 inline constexpr std::string_view scheme_words[] = {"catmullClark", "loop"};
 inline constexpr std::string_view border_words[] = {"clamped", "pinned", "free"};
 
+/// Of a surface of triangles.
+constexpr Attribute unit_attribute(std::string_view absent) {
+  return {.name = "unit",
+          .meaning =
+              "length that counts as 1 in u and v, or two of them, along u and v; only of a "
+              "surface",
+          .unit = "length/uv",
+          .range = positive,
+          .absent = absent};
+}
+
 template <>
 struct Description<GridSheet> {
   static constexpr Range count{.least = 3, .most = max_sheet_vertices};
@@ -107,13 +118,7 @@ struct Description<MeshReading> {
                   .instead = use_surface},
         of.uv...);
     row(Attribute{.name = "resolution", .instead = use_surface, .need = Need::Later});
-    row(Attribute{.name = "unit",
-                  .meaning = "length that counts as 1 in u and v, or two of them, along u and v; "
-                             "only of a surface",
-                  .unit = "length/uv",
-                  .range = positive,
-                  .absent = "the root of its area"},
-        of.unit...);
+    row(unit_attribute("the root of its area"), of.unit...);
     row(Attribute{.name = "axis",
                   .meaning = "direction that u follows along the surface, in the mesh's own "
                              "coordinates; only of a surface",
@@ -221,13 +226,7 @@ struct Description<SheetOf<Of>> {
                   .instead = use_surface,
                   .absent = "grid"},
         each.surface.reading.uv...);
-    row(Attribute{.name = "unit",
-                  .meaning = "length that counts as 1 in u and v, or two of them, along u and v; "
-                             "only of a surface",
-                  .unit = "length/uv",
-                  .range = positive,
-                  .absent = "width and depth"},
-        each.surface.reading.unit...);
+    row(unit_attribute("width and depth"), each.surface.reading.unit...);
     row(Attribute{.name = "axis",
                   .meaning = "direction that u follows along the surface; only of a surface",
                   .unit = "1",
