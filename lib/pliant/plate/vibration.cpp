@@ -124,6 +124,7 @@ Eigen::MatrixXd rigid_motions(const PlateSystem& system) {
       if (is_resisted) stop_at(node, motions);
     }
   }
+  if (motions.cols() == 0) return Eigen::MatrixXd(unknown_count(outline), 0);
   Eigen::MatrixXd moving(unknown_count(outline), motions.cols());
   const std::vector<int> numbers = numbers_of_unknowns(outline);
   for (Eigen::Index node = 0; node < motions.rows(); ++node) {
