@@ -178,7 +178,8 @@ TEST_CASE("of triangles that are equally near the first one carries", "[simulati
   made.forces[0].targets = {"s"};
   made.forces[0].follow = "carrier";
   auto simulation = Simulation::make(made).value();
-  const auto& told = simulation.report(2).value().surfaces[0].forces[0];
+  const FrameReport report = simulation.report(2).value();
+  const ForceReport& told = report.surfaces[0].forces[0];
   const auto& found = std::get<PointForce>(told.sampled->kind);
   CHECK((found.center - place).norm() < 1e-12);
   const bool stays = (found.direction - Vector3d(0, 1, 0)).norm() < 1e-12;
