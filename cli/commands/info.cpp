@@ -174,6 +174,9 @@ int run_info(const InfoOptions& options) {
   const auto looked = look_at_surfaces(facts, *simulation, run);
   line.erase();
   print_notes(notes_on_shapes(*simulation));
+  facts.warnings = warnings_about(simulation->rest_shapes(), facts.scene);
+  add_still_surfaces(facts.warnings, facts.scene);
+  print_warnings(facts.warnings, facts.scene.origin);
   if (!looked) return report(looked.error());
   if (facts.no_first_frame) report(*facts.no_first_frame);
   const int told = tell(facts, options);

@@ -200,6 +200,13 @@ std::string info_json(const SceneFacts& facts) {
     json["channels"].push_back(
         {{"path", channel.path}, {"keys", std::visit(KeysJson{}, channel.channel)}});
   }
+  json["warnings"] = Json::array();
+  for (const Warning& warning : facts.warnings) {
+    const ScenePlace place = scene.origin.place_of(place_of(warning, scene.origin));
+    json["warnings"].push_back({{"file", place.file},
+                                {"line", place.line > 0 ? Json(place.line) : Json(nullptr)},
+                                {"message", place.told(warning.message())}});
+  }
   json["memory"] = {{"surfaces", facts.surface_memory}, {"solver", facts.solver_memory}};
   return json.dump(2, ' ', true, Json::error_handler_t::replace) + '\n';
 }

@@ -32,6 +32,7 @@ struct SceneFacts {
   std::vector<SurfaceFacts> surfaces = {};
   std::vector<Preview> previews = {};
   std::optional<Error> no_first_frame = {};  ///< why there is none: a loop closes to no cycle
+  std::vector<Warning> warnings = {};        ///< that need no frame
   std::size_t surface_memory = 0;            ///< [bytes]
   std::size_t solver_memory = 0;             ///< of the largest region previewed [bytes]
 };

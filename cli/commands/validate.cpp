@@ -49,7 +49,9 @@ void add_problem(Findings& findings, const std::string& file, const TextSpan& sp
                                {"endLine", known(span.end_line)},
                                {"endColumn", known(span.end_column)},
                                {"kind", kind},
-                               {"severity", kind == "note" ? "information" : "error"},
+                               {"severity", kind == "note"      ? "information"
+                                            : kind == "warning" ? "warning"
+                                                                : "error"},
                                {"message", message}});
 }
 
@@ -78,6 +80,15 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
     }
   }
   if (!checked) return tell(checked.error(), file, findings);
+  std::vector<Warning> warnings = warnings_about(*scene);
+  add_still_surfaces(warnings, *scene);
+  if (!findings) print_warnings(warnings, scene->origin);
+  if (findings) {
+    for (const Warning& warning : warnings) {
+      const ScenePlace place = scene->origin.place_of(place_of(warning, scene->origin));
+      add_problem(*findings, place.file, place, "warning", place.told(warning.message()));
+    }
+  }
   if (!options.is_quiet && !findings) {
     print(stdout, fmt::format("{}: valid: {}, {}, frames {} to {}\n", printable(scene->origin.file),
                               counted(scene->surfaces.size(), "surface"),

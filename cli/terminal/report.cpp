@@ -62,11 +62,14 @@ void print_warning(const ScenePlace& place, const std::string& message) {
                             printable(place.told(message))));
 }
 
-void print_warnings(const Simulation& simulation) {
-  const SceneOrigin& origin = simulation.scene().origin;
-  for (const Warning& warning : simulation.warnings()) {
+void print_warnings(std::span<const Warning> warnings, const SceneOrigin& origin) {
+  for (const Warning& warning : warnings) {
     print_warning(origin.place_of(place_of(warning, origin)), warning.message());
   }
+}
+
+void print_warnings(const Simulation& simulation) {
+  print_warnings(simulation.warnings(), simulation.scene().origin);
 }
 
 }  // namespace pliant::cli

@@ -46,6 +46,9 @@ void print_notes(std::span<const SceneNote> notes);
 /// Prints a warning about a place of a scene on stderr.
 void print_warning(const ScenePlace& place, const std::string& message);
 
+/// Prints warnings about a scene, each with its line.
+void print_warnings(std::span<const Warning> warnings, const SceneOrigin& origin);
+
 /// Prints the warnings of a run, each with its line.
 void print_warnings(const Simulation& simulation);
 

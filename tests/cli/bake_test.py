@@ -183,10 +183,10 @@ class Bake(Command):
         self.assertTrue(shown.endswith("\r\x1b[K"))  # wiped
 
     def test_warnings_name_the_force_and_its_frames(self):
-        scene = self.write("w.xml", SCENE.format(end=5).replace('"4.5"', '"0.5"'))
+        scene = self.write("w.xml", SCENE.format(end=5).replace('"4.5"', '"0.5"').replace('"2.5"', '"0.5"'))
         result = self.run_pliant("bake", scene, "-o", "a.npy")
         self.assertRegex(result.stderr, r'^\S*w\.xml:4: warning: force "poke" selects fewer than 3 x 3 '
-                                        r'nodes of "sheet" at frames 1-4: too few to solve\n$')
+                                        r'nodes of "sheet" at frames 1-4: too few to solve; nothing moved\n$')
 
 
     def test_what_was_not_played_is_no_excuse_for_silence(self):

@@ -154,6 +154,27 @@ class Validate(Command):
 
 
 class Info(Command):
+    def test_warnings_are_told_by_each_command(self):
+        scene = self.write("s.xml", """<scene version="1" start="1" end="20">
+<surface name="sheet"><grid columns="9" rows="9"/></surface>
+<point name="poke" deformationRadius="0.2"
+       forceRadius="0.4"><animate attribute="magnitude"><key frame="1" value="100"/><key frame="9" value="0"/></animate></point>
+<point name="late"><animate attribute="magnitude">
+<key frame="30" value="0"/><key frame="40" value="5"/></animate></point>
+</scene>""")
+        lines = [":4: warning: the forceRadius of \"poke\" exceeds deformationRadius",
+                 ":5: warning: the keys of late.magnitude are outside the frames 1 to 20"]
+        for command in (["validate", scene], ["info", scene], ["bake", scene, "-o", self.path("a.npy")]):
+            told = self.run_pliant(*command).stderr
+            for line in lines:
+                self.assertEqual(told.count(line), 1, (command, told))
+        problems = json.loads(self.run_pliant("validate", scene, "--json").stdout)["problems"]
+        self.assertEqual(sorted((p["line"], p["kind"], p["severity"]) for p in problems),
+                         [(4, "warning", "warning"), (5, "warning", "warning")])
+        warnings = json.loads(self.run_pliant("info", scene, "--json").stdout)["warnings"]
+        self.assertEqual(sorted(w["line"] for w in warnings), [4, 5])
+        self.assertTrue(all(w["message"] for w in warnings))
+
     def test_what_an_author_chooses_numbers_by(self):
         scene = self.write("i.xml", SCENE.format(end=48).replace(' magnitude="3000"/>', """>
     <animate attribute="magnitude">

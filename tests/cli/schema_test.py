@@ -163,7 +163,8 @@ class Schema(Command):
             for problem in json.loads(read.stdout)["problems"]:
                 if problem["kind"] != "note":
                     # One about a mesh is a problem of its scene.
-                    problems.setdefault(problem["file"], []).append(problem["message"])
+                    if problem["severity"] == "error":
+                        problems.setdefault(problem["file"], []).append(problem["message"])
             for scene in json.loads(read.stdout)["scenes"]:
                 if not scene["valid"] and not problems[scene["file"]]:
                     problems[scene["file"]].append("cannot read one of its files")

@@ -272,7 +272,7 @@ class Surfaces(Command):
 
     def test_a_force_that_is_zero_in_the_region_is_not_outside_it(self):
         # Inertia, while nothing accelerates.
-        rig = ('<group name="rig" center="0 1 0" deformationRadius="0.7"><inertia name="lag" magnitude="1"/></group>')
+        rig = ('<group name="rig" follow="ball" center="0 1 0" deformationRadius="0.7"><inertia name="lag" magnitude="1"/></group>')
         shift = """<transform><animate attribute="translate"><key frame="1" value="0 0 0"/><key frame="6" value="0 0 0"/>
 <key frame="8" value="0 1 0"/></animate></transform>"""
         self.assertNotIn("warning", self.bake(self.scene_of(force=rig, parts=shift, end=12), "a.npy").stderr)

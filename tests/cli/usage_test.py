@@ -188,7 +188,8 @@ class Errors(Command):
     def test_warnings_come_before_the_error_that_they_explain(self):
         text = SCENE.format(end=9).replace("</surface>", '<material density="0" damping="0" b="1e-10" '
                                                          'c="2e-10" d="1e-10"/></surface>')
-        text = text.replace('deformationRadius="4.5" ', "").replace('magnitude="3000"/>', """magnitude="1e149">
+        text = text.replace('deformationRadius="4.5" forceRadius="2.5" ', 'forceRadius="0.4" ')
+        text = text.replace('magnitude="3000"/>', """magnitude="1e149">
     <animate attribute="deformationRadius" interpolation="step">
       <key frame="1" value="0.5"/><key frame="4" value="4.5"/></animate></point>""").replace("e-10", "e-170")
         scene = self.write("s.xml", text)

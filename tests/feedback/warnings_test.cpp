@@ -40,7 +40,10 @@ TEST_CASE("a force that selects nothing is a warning about the frames that were 
   s.forces[0].enabled = switch_at({{1, false}, {6, true}});
   CHECK_THAT(warnings_of(s, 9)[0].message(), Contains("at frames 6-8"));
   s.forces[0].enabled = false;
-  CHECK(warnings_of(s, 9).empty());  // disabled on purpose
+  const auto still = warnings_of(s, 9);  // one for both
+  REQUIRE(still.size() == 1);
+  CHECK_THAT(still[0].message(), Contains("nothing moved at frames 1-9 of \"a\" and \"b\":") &&
+                                     Contains("\"f\" is disabled"));
   s.forces[0].enabled = true;
   s.forces[0].kind =
       PointChannels{.center = vector_curve({{1, {0, 50, 0}}, {7, {0, 50, 0}}, {8, {0, 0, 0}}})};
@@ -88,13 +91,17 @@ TEST_CASE("a magnitude that pushes nothing in the whole range is a warning, and 
   CHECK_THAT(warnings_of(s, 4)[0].message(), Contains("at frames 1-3, of those that were played:"));
   Scene quiet = s;
   quiet.forces[0].magnitude = 0.0;
-  CHECK(warnings_of(quiet, 5).empty());
+  REQUIRE(warnings_of(quiet, 5).size() == 1);
+  CHECK_THAT(warnings_of(quiet, 5)[0].message(), Contains("nothing moved") &&
+                                                     Contains("of \"a\":") &&
+                                                     Contains("magnitude of \"f\" is 0"));
   quiet = s;
   quiet.forces[0].force_radius = curve({{1, 0}, {3, 0}, {4, 3}});
   quiet.forces[0].kind = PointChannels{.center = Value<3>{0.5, 0, 0.5}};
   CHECK(warnings_of(quiet, 5).empty());  // it pushes in the end
   quiet = s;
   quiet.forces[0].deformation_radius = 0.8;  // 2 x 2 nodes: that is the warning
+  quiet.forces[0].force_radius = 0.6;
   REQUIRE(warnings_of(quiet, 5).size() == 1);
   CHECK(warnings_of(quiet, 5)[0].kind == Warning::Kind::RegionTooSmall);
 }
@@ -104,6 +111,7 @@ TEST_CASE("warnings tell of islands each by itself", "[feedback][warnings]") {
   s.surfaces[0].solver.combine = Combine::Islands;
   CHECK(warnings_of(s, 4).empty());
   s.forces[1].deformation_radius = 0.5;  // its island alone is too small
+  s.forces[1].force_radius = 0.5;
   const auto small = warnings_of(s, 4);
   REQUIRE(small.size() == 1);
   CHECK(small[0].kind == Warning::Kind::RegionTooSmall);
@@ -123,6 +131,7 @@ TEST_CASE("a union tells of what is too small in it", "[feedback][warnings]") {
   s.surfaces[0].solver.combine = Combine::Union;
   CHECK(warnings_of(s, 4).empty());
   s.forces[1].deformation_radius = 0.8;  // 2 x 2 nodes, far from those of the other force
+  s.forces[1].force_radius = 0.8;
   for (const double magnitude : {0.0, 5000.0}) {
     s.forces[1].magnitude = magnitude;
     const auto small = warnings_of(s, 4);

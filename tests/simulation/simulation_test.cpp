@@ -328,6 +328,7 @@ TEST_CASE("a run stops when asked to, and goes on afterwards", "[simulation]") {
 TEST_CASE("a region too small to solve is told once, with its frames", "[simulation]") {
   Scene s = scene({sheet("s")}, {poke("tiny", {0, 0, 0})});
   s.forces[0].deformation_radius = 0.5;
+  s.forces[0].force_radius = 0.5;
   s.forces[0].enabled = switch_at({{1, true}, {4, false}, {6, true}});
   auto simulation = Simulation::make(s).value();
   REQUIRE(simulation.at(12));

@@ -91,6 +91,9 @@ class Body {
   /// The plan of the last step; empty before the first.
   virtual const StepPlan& last_step() const = 0;
 
+  /// The velocities that the last step that solved began with; #nodes x 3.
+  virtual const Field& velocities_before() const = 0;
+
   /// The effect of a force, by its index in the inputs, in the step that `plan` plans for them.
   virtual Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const = 0;
 

@@ -13,6 +13,7 @@ class DrivenBody final : public Body {
   Result<StepPlan> look(const BodyInputs&) const override { return StepPlan{}; }
   Result<void> step(const BodyInputs&) override { return {}; }
   const StepPlan& last_step() const override { return no_step_; }
+  const Field& velocities_before() const override { return rest(); }
   Push push_of(const BodyInputs&, const StepPlan&, std::size_t) const override { return {}; }
   std::vector<MovedPatch> moved_patches(const StepPlan&, std::size_t) const override { return {}; }
   std::unique_ptr<PatchPlate> plate_of(const BodyInputs&, const StepPlan&, std::size_t,

@@ -40,6 +40,7 @@ class ElasticBody : public Body {
  public:
   Result<void> step(const BodyInputs& inputs) final;
   const StepPlan& last_step() const final { return plan_; }
+  const Field& velocities_before() const final { return next_.velocities; }
 
  protected:
   ElasticBody(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
@@ -84,7 +85,7 @@ class ElasticBody : public Body {
   Result<void> take();
   void mark_unsettled();
 
-  BodyState next_;  // until it is complete
+  BodyState next_;  // until it is complete; then the one before
 };
 
 }  // namespace pliant

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "pliant/core/shortened.hpp"
-#include "pliant/mesh/triangles/triangle_surface.hpp"
 
 namespace pliant {
 
@@ -26,6 +25,10 @@ constexpr std::size_t most_ranges = 8;
 }  // namespace
 
 std::string Warning::message() const {
+  return is_still ? own_message() + "; nothing moved" : own_message();
+}
+
+std::string Warning::own_message() const {
   const std::string_view noun = is_group ? "group" : "force";
   const bool is_single = frames.ranges().size() == 1 &&
                          frames.ranges().front().first == frames.ranges().front().second;
@@ -90,43 +93,62 @@ std::string Warning::message() const {
           faces, faces == 1 ? "" : "s", surface, faces == 1 ? "s" : "");
     case Kind::CacheOutside:
       return fmt::format(
-          "the cache of \"{}\" has no sample within the scene: all are {} its frames, at frames "
-          "{:.6g} to {:.6g}, so the surface keeps the shape of one of them; cacheStart moves them",
+          "the cache of \"{}\" has no sample within the scene: they are outside the frames, all {} "
+          "its frames, at frames {:.6g} to {:.6g}, so the surface keeps the shape of one of them; "
+          "cacheStart moves them",
           surface, is_cache_late ? "after" : "before", cache->first, cache->last);
     case Kind::FileLeftOut:
       return left_out_text(surface, left_out);
+    case Kind::NothingMoved:
+      return fmt::format("nothing moved {} of {}", when, told);
+    case Kind::KeysOutside:
+      return fmt::format("the keys of {} are {}", channel, told);
+    case Kind::Drifts:
+      return fmt::format(
+          "{} \"{}\" drifts over \"{}\" {}: it stays in its place, while the surface moves by more "
+          "than its {}; follow=\"{}\" takes it along, and keys of its place move it too",
+          noun, force, surface, when, told, surface);
+    case Kind::FliesAway:
+      return fmt::format(
+          "\"{}\" flies away {}: nothing holds it, or a piece of it, which has moved by more than "
+          "the size of the surface; hold its border or edges, give it a goal, or push less",
+          surface, when);
+    case Kind::FrozenMoving:
+      return fmt::format(
+          "\"{}\" is frozen while it moves {}: nodes leave the region of the forces and stop where "
+          "they are, away from rest; keep the force enabled, with a magnitude of 0, until they are "
+          "at rest, or let them go back with release=\"recover\", or solve all with region=\"all\"",
+          surface, when);
+    case Kind::RadiusExceeds:
+      return fmt::format(
+          "the forceRadius of \"{}\" exceeds deformationRadius {}: nothing moves beyond "
+          "deformationRadius, so that its push ends there at once; make deformationRadius larger",
+          force, when);
+    case Kind::RadiusUnused:
+      return fmt::format(
+          "{} \"{}\": deformationRadius has no effect, because region=\"all\" solves the whole of "
+          "{}; remove it",
+          noun, force, told);
+    case Kind::NeverMoves:
+      return fmt::format(
+          "inertia \"{}\" has no effect on {}, which never moves: its transform is the same {}, "
+          "and it has no cache; key translate or rotate",
+          force, told, when);
+    case Kind::MapOutside:
+      return fmt::format("the values of the map of {} are outside 0 to 1: {}", channel, told);
   }
   return {};
 }
 
-std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, const Scene& scene) {
-  std::vector<Warning> warnings;
-  for (const RestShape& shape : rest_shapes) {
-    if (!shape.mesh.left_out.empty()) {
-      Warning& warning = warnings.emplace_back();
-      warning.kind = Warning::Kind::FileLeftOut;
-      warning.surface = shape.name;
-      warning.left_out = shape.mesh.left_out;
-    }
-    if (shape.surface && shape.surface->faces_left_out > 0) {
-      Warning& warning = warnings.emplace_back();
-      warning.kind = Warning::Kind::FacesLeftOut;
-      warning.surface = shape.name;
-      warning.faces = shape.surface->faces_left_out;
-    }
-    const auto cache = cache_summary_of(shape);
-    if (cache && (cache->last < scene.start || cache->first > scene.end)) {
-      Warning& warning = warnings.emplace_back();
-      warning.kind = Warning::Kind::CacheOutside;
-      warning.surface = shape.name;
-      warning.cache = cache;
-      warning.is_cache_late = cache->first > scene.end;
-    }
-  }
-  return warnings;
-}
-
 TextPlace place_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.channel.empty()) {
+    const std::size_t dot = warning.channel.find('.');
+    return origin.at(warning.channel.substr(0, dot), warning.channel.substr(dot + 1));
+  }
+  if (warning.kind == Warning::Kind::RadiusExceeds) return origin.at(warning.force, "forceRadius");
+  if (warning.kind == Warning::Kind::RadiusUnused)
+    return origin.at(warning.force, "deformationRadius");
+  if (warning.kind == Warning::Kind::FrozenMoving) return origin.at(warning.surface, "release");
   if (!warning.force.empty()) return origin.at(warning.force);
   if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
       warning.kind == Warning::Kind::LoosePatch) {

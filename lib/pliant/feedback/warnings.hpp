@@ -29,6 +29,15 @@ struct Warning {
     FacesLeftOut,    ///< faces of a mesh that its surface does not have
     CacheOutside,    ///< no frame of the scene is within the samples of a surface's cache
     FileLeftOut,     ///< what a mesh's file has and the mesh lacks
+    NothingMoved,    ///< no frame displaces a surface, though forces target it
+    KeysOutside,     ///< all keys of a channel are before or after the frames that are played
+    Drifts,          ///< a surface moves away from a force that stays where it is
+    FliesAway,       ///< a piece that nothing holds is farther away than the surface is large
+    FrozenMoving,    ///< nodes leave the region in the middle of their motion
+    RadiusExceeds,   ///< a force radius above the deformation radius
+    RadiusUnused,    ///< a deformation radius where all of a surface is solved
+    NeverMoves,      ///< inertia of a surface that stands still
+    MapOutside,      ///< values of a map, and what it makes of them, outside 0 to 1
   };
   Kind kind = Kind::RegionTooSmall;
   std::string surface;  ///< empty: all, for a force that selects nothing on any surface
@@ -43,14 +52,41 @@ struct Warning {
   /// Whether it tells of frames that lack some of the scene's, which were not played: there what
   /// never happened may still happen.
   bool is_of_part = false;
+  bool is_still = false;     ///< whether the surface did not move at all, for this reason
+  std::string channel = {};  ///< its path: for KeysOutside, MapOutside; NothingMoved by its keys
+  std::string told = {};     ///< the words that only its kind needs: why, by what, what to do
 
   /// One line for an author, frames included.
   std::string message() const;
+
+ private:
+  std::string own_message() const;  // without what `is_still` adds
 };
 
-/// The warnings about meshes and caches, known before any frame. Requires: the shapes are those of
-/// the scene's surfaces.
+/// The warnings about a scene that need no shape: keys, radii, inertia. Requires: `check_channels`
+/// accepts the scene. Cost: a sample of each channel concerned at each frame.
+std::vector<Warning> warnings_about(const Scene& scene);
+
+/// The warnings about meshes, caches and maps, and about where forces are, known before any frame;
+/// and those of the scene. Requires: the shapes are those of the scene's surfaces. Of long
+/// scenes only so many frames are looked at for surfaces that move away from a force: with a cache,
+/// whose samples are read for it, and without.
 std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, const Scene& scene);
+
+inline constexpr int most_cache_frames = 64;
+inline constexpr int most_moved_frames = 10'000;
+
+/// Takes away that a force pushes nothing, where another warning says why.
+void drop_repeated(std::vector<Warning>& warnings);
+
+/// Adds the surfaces of which it is known before any frame that nothing moves them, and takes away
+/// what is then told twice.
+void add_still_surfaces(std::vector<Warning>& warnings, const Scene& scene);
+
+/// The same after all frames are played: the surfaces, in the order of the scene, that have not
+/// moved. If one of `warnings` is the reason, it tells so; otherwise the surface is added to them.
+void add_still_surfaces(std::vector<Warning>& warnings, const Scene& scene,
+                        const std::vector<bool>& has_moved);
 
 /// The place of a warning's cause: the force, or an attribute of its surface such as its tangents
 /// or start frame.

@@ -165,6 +165,10 @@ Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin&
 std::vector<Error> check_against_shape(const Scene& scene, const Surface& surface,
                                        const RestShape& shape);
 
+/// The pieces of a surface that nothing holds if all of it is solved: by node, counted from 0; -1:
+/// it is held, or never moves.
+std::vector<int> loose_pieces_of(const Surface& surface, const RestShape& shape);
+
 /// The note on a surface's shape as one of the scene; none if it is empty.
 std::optional<SceneNote> note_on(const Surface& surface, const std::string& note,
                                  const SceneOrigin& origin);

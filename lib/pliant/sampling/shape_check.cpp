@@ -15,11 +15,11 @@
 namespace pliant {
 namespace {
 
-// The first node of a piece that neither a border holds nor held nodes or a goal do; none: all are
-// held. `goals`: the factors of the nodes; null: there is no goal. `held` null: no node is.
-std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
+// By node the piece that neither a border holds nor held nodes or a goal do; -1: it is held, or in
+// no piece. `goals`: the factors of the nodes; null: there is no goal. `held` null: no node is.
+std::vector<int> loose_pieces(const TriangleSurface& surface, bool border_holds,
                               const std::vector<double>* goals, const NodeMarks* held) {
-  const std::vector<int> pieces = pieces_of(surface);
+  std::vector<int> pieces = pieces_of(surface);
   std::vector<bool> is_held(pieces.size());  // by piece
   for (int face = 0; face < surface.face_count() && border_holds; ++face) {
     const bool has_border = std::ranges::any_of(
@@ -33,10 +33,9 @@ std::optional<int> loose_node(const TriangleSurface& surface, bool border_holds,
   }
   for (std::size_t piece = 0; piece < pulled.size(); ++piece)
     is_held[piece] = is_held[piece] || are_beyond_line(surface.rest, pulled[piece]);
-  const auto loose =
-      std::ranges::find_if(pieces, [&](int piece) { return piece >= 0 && !is_held[piece]; });
-  if (loose == pieces.end()) return {};
-  return static_cast<int>(loose - pieces.begin());
+  for (int& piece : pieces)
+    if (piece >= 0 && is_held[piece]) piece = -1;
+  return pieces;
 }
 
 // That of a whole grid, of which nodes may be held; null: none is.
@@ -71,16 +70,37 @@ std::optional<Error> check_is_held(const Scene& scene, const Surface& surface,
     return not_held(scene, surface, *found,
                     has_edges ? "" : "a surface that is closed along u and v");
   }
-  const auto node = loose_node(*shape.surface, surface.reading.border != Border::Free,
-                               is_by_goal ? &shape.factors->goal : nullptr, shape.held.get());
-  if (!node) return {};
-  const auto vertex = std::ranges::find(shape.surface->vertex_nodes, *node);
+  const std::vector<int> pieces =
+      loose_pieces(*shape.surface, surface.reading.border != Border::Free,
+                   is_by_goal ? &shape.factors->goal : nullptr, shape.held.get());
+  const auto loose = std::ranges::find_if(pieces, [](int piece) { return piece >= 0; });
+  if (loose == pieces.end()) return {};
+  const auto node = static_cast<int>(loose - pieces.begin());
+  const auto vertex = std::ranges::find(shape.surface->vertex_nodes, node);
   const auto index = static_cast<int>(vertex - shape.surface->vertex_nodes.begin());
   return not_held(scene, surface, *found,
                   fmt::format("the piece with vertex {}", index + shape.mesh.first_index));
 }
 
 }  // namespace
+
+std::vector<int> loose_pieces_of(const Surface& surface, const RestShape& shape) {
+  const Channel<1>& goal = surface.material.goal;
+  const bool has_goal = goal.is_animated() || goal.at(0)[0] > 0;
+  const std::vector<double>* const goals =
+      has_goal && shape.factors ? &shape.factors->goal : nullptr;
+  if (has_goal && (!goals || goals->empty())) return {};  // it is everywhere
+  if (shape.surface) {
+    return loose_pieces(*shape.surface, surface.reading.border != Border::Free, goals,
+                        shape.held.get());
+  }
+  if (!shape.grid) return {};
+  PlateSystem system{outline_of(*shape.grid, surface.solver.edges, shape.held.get()), {}};
+  system.goal = has_goal ? 1 : 0;
+  system.factors = shape.factors;
+  return std::vector<int>(static_cast<std::size_t>(shape.grid->node_count()),
+                          is_held(system) ? -1 : 0);
+}
 
 std::vector<Error> check_against_shape(const Scene& scene, const Surface& surface,
                                        const RestShape& shape) {

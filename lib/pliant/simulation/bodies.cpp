@@ -135,6 +135,7 @@ Result<void> Bodies::make_all() {
     if (!add(scene_.surfaces[k], std::move(shapes[k]))) return interrupted_at_start();
   }
   steps_.resize(bodies_.size());
+  keeps_velocities_.resize(bodies_.size());
   cycles_.resize(bodies_.size());
   return {};
 }
@@ -259,6 +260,7 @@ void Bodies::step(std::size_t index, int frame, SceneStates* states) {
       return;
     }
     if (auto stored = states->read(index, frame, step.inputs, body)) {
+      if (keeps_velocities_[index]) step.velocities_before = body.state().velocities;
       body.restore(std::move(stored->state));
       step.facts = std::move(stored->facts);
       step.is_read = true;
@@ -274,6 +276,20 @@ void Bodies::step(std::size_t index, int frame, SceneStates* states) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
     states->write(index, frame, body, step.facts);
   }
+}
+
+RunWatch Bodies::watch() {
+  RunWatch watch(scene_, rest_shapes_);
+  for (std::size_t k = 0; k < size(); ++k) keeps_velocities_[k] = watch.needs_velocities(k);
+  return watch;
+}
+
+void Bodies::look(RunWatch& watch, std::size_t surface, int frame, WarningLog& log) const {
+  const Step& step = steps_[surface];
+  if (step.is_again) return watch.forget_step(surface);
+  const Body& body = *bodies_[surface];
+  watch.look(surface, frame, step.inputs.body.frame_length, step.facts.is_solved, body,
+             step.is_read ? step.velocities_before : body.velocities_before(), log);
 }
 
 Result<void> Bodies::outcome(std::size_t index) const {

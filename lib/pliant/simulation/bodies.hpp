@@ -13,6 +13,7 @@
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/thread_pool.hpp"
+#include "pliant/feedback/run_watch.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/states/scene_states.hpp"
@@ -38,6 +39,7 @@ class Bodies {
     SurfaceInputs inputs;
     Result<void> outcome;
     StepFacts facts;
+    Field velocities_before = {};  ///< of a step that was read
   };
 
   /// Requires: scene and sampling outlive it. `make_all` gives sampling the animated shapes.
@@ -57,6 +59,12 @@ class Bodies {
 
   /// The last step of a surface.
   const Step& last_step(std::size_t surface) const { return steps_[surface]; }
+
+  /// A watch of all surfaces, which `look` then needs.
+  RunWatch watch();
+
+  /// Lets the watch look at the last step of a surface. Requires: it is solved now.
+  void look(RunWatch& watch, std::size_t surface, int frame, WarningLog& log) const;
 
   /// The error of its last step, with the surface's name and line, and the frame.
   Result<void> outcome(std::size_t surface) const;
@@ -108,6 +116,7 @@ class Bodies {
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::size_t> drivers_;  // the index of the surface that drives each, or its own
   std::vector<Step> steps_;
+  std::vector<bool> keeps_velocities_;            // from before each step, also of one that is read
   std::vector<std::optional<BodyState>> cycles_;  // the states at their beginnings, once known
   SolverChoice solver_;
   int exact_parts_;

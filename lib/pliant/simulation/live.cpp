@@ -16,6 +16,8 @@
 #include <fmt/ranges.h>
 
 #include "pliant/core/expects.hpp"
+#include "pliant/feedback/run_watch.hpp"
+#include "pliant/feedback/warning_log.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
@@ -174,6 +176,7 @@ class LiveSimulation::Run {
   Result<Frame> positions(Frame reuse) { return bodies_.output(frame_, std::move(reuse)); }
   Result<FrameReport> report();
   Result<Scene> performance() const;
+  std::vector<Warning> warnings() const;
 
  private:
   tl::unexpected<Error> no_channel(std::string_view channel) const;
@@ -196,11 +199,22 @@ class LiveSimulation::Run {
   bool is_checked_ = false;        // the present values, at this frame
   bool may_step_in_part_ = false;  // whether a step that fails may have moved a body
   std::vector<BodyState> before_;  // the states before such a step; reused
+  std::vector<Warning> warnings_of_scene_;
+  WarningLog warnings_;
+  RunWatch watch_;
 };
 
 // Plays the preroll too.
 Result<void> LiveSimulation::Run::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
+  warnings_of_scene_ = warnings_about(bodies_.rest_shapes(), scene_);
+  // What is set while it plays moves surfaces, forces and radii.
+  std::erase_if(warnings_of_scene_, [](const Warning& warning) {
+    using enum Warning::Kind;
+    return warning.kind == KeysOutside || warning.kind == Drifts || warning.kind == NeverMoves ||
+           warning.kind == RadiusExceeds;
+  });
+  watch_ = bodies_.watch();
   for (int frame = first_; frame < scene_.start; ++frame) {
     if (auto stepped = step(frame); !stepped) return stepped;
   }
@@ -347,7 +361,19 @@ Result<void> LiveSimulation::Run::step(int frame) {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     if (auto done = bodies_.outcome(k); !done) return done;
   }
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Bodies::Step& step = bodies_.last_step(k);
+    if (!step.is_solved_now) continue;
+    add_facts(warnings_, scene_.surfaces[k], frame, step.inputs, step.facts);
+    bodies_.look(watch_, k, frame, warnings_);
+  }
   return {};
+}
+
+std::vector<Warning> LiveSimulation::Run::warnings() const {
+  std::vector<Warning> warnings = warnings_of_scene_;
+  for (Warning& warning : warnings_.warnings(scene_, false)) warnings.push_back(std::move(warning));
+  return warnings;
 }
 
 Result<Scene> LiveSimulation::Run::performance() const {
@@ -429,6 +455,8 @@ Result<FrameReport> LiveSimulation::report() { return run_->report(); }
 Result<Scene> LiveSimulation::performance() const { return run_->performance(); }
 
 const Scene& LiveSimulation::scene() const { return run_->scene(); }
+
+std::vector<Warning> LiveSimulation::warnings() const { return run_->warnings(); }
 
 std::span<const RestShape> LiveSimulation::rest_shapes() const {
   return run_->bodies().rest_shapes();

@@ -70,6 +70,10 @@ class LiveSimulation {
   /// have.
   Result<Scene> performance() const;
 
+  /// The warnings of the frames played so far, as `Simulation::warnings`, but for those about what
+  /// a program may set later: keys, places, radii, and surfaces that nothing moves.
+  std::vector<Warning> warnings() const;
+
   /// The scene with the present values.
   const Scene& scene() const;
 

@@ -25,6 +25,7 @@ Result<void> Simulation::Player::make_bodies() {
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     states_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
   }
+  watch_ = bodies_.watch();
   return {};
 }
 
@@ -67,6 +68,7 @@ Result<int> Simulation::Player::restore(std::string_view state_bytes) {
   auto found = states_.read_checkpoint(state_bytes, bodies_.all());
   if (!found) return fail(found.error());
   frame_ = found->frame;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) watch_.forget_step(k);
   bodies_.restore(std::move(found->states));
   keep(true);
   furthest_frame_ = std::max(furthest_frame_, frame_);
@@ -113,6 +115,7 @@ Result<void> Simulation::Player::step() {
     is_read = is_read || step.is_read;
     if (!step.is_solved_now) continue;
     add_facts(warnings_, surface, frame_, step.inputs, step.facts);
+    bodies_.look(watch_, k, frame_, warnings_);
     is_solved = is_solved || (!step.is_read && !step.is_again);
   }
   frame_counts_.solved += is_solved ? 1 : 0;
@@ -122,6 +125,7 @@ Result<void> Simulation::Player::step() {
 
 // Goes back to a kept frame, or to the start, where all bodies are at rest.
 void Simulation::Player::rewind(int frame) {
+  for (std::size_t k = 0; k < bodies_.size(); ++k) watch_.forget_step(k);
   const std::optional<int> kept = cache_.latest_until(frame);
   if (kept) {
     bodies_.restore(cache_.use(*kept));
@@ -138,6 +142,7 @@ void Simulation::Player::read_latest(int frame) {
     auto found = states_.states_at(candidate, bodies_.all());
     if (!found) continue;
     bodies_.restore(std::move(found->states));
+    for (std::size_t k = 0; k < bodies_.size(); ++k) watch_.forget_step(k);
     frame_ = candidate;
     ++frame_counts_.read;
     keep(true);
@@ -153,6 +158,12 @@ std::vector<Warning> Simulation::Player::warnings() const {
   std::vector<Warning> warnings = warnings_about(bodies_.rest_shapes(), scene_);
   for (Warning& warning : warnings_.warnings(scene_, is_complete)) {
     warnings.push_back(std::move(warning));
+  }
+  drop_repeated(warnings);
+  if (is_complete) {
+    std::vector<bool> has_moved;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) has_moved.push_back(watch_.has_moved(k));
+    add_still_surfaces(warnings, scene_, has_moved);
   }
   return warnings;
 }

@@ -8,6 +8,7 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/feedback/frame_ranges.hpp"
+#include "pliant/feedback/run_watch.hpp"
 #include "pliant/feedback/warning_log.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/simulation/bodies.hpp"
@@ -55,6 +56,7 @@ class Simulation::Player {
   FrameCache cache_;
   SceneStates states_;
   WarningLog warnings_;
+  RunWatch watch_;
   FrameRanges passed_;  // frames whose warnings are known
   FrameCounts frame_counts_;
 };
