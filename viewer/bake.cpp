@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "pliant/core/stoppable_sort.hpp"
+#include "pliant/feedback/surface_lines.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/forces.hpp"
@@ -142,6 +143,7 @@ class SurfaceView {
                             {"highBytes", arrays.add(rest->high)}};
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
+    if (shape_.held) json["pins"] = arrays.add(held_vertices());
     return json;
   }
 
@@ -154,6 +156,17 @@ class SurfaceView {
       }
     }
     return numbers;
+  }
+
+  // A vertex of each held node.
+  std::vector<std::uint32_t> held_vertices() const {
+    std::vector<std::uint32_t> held;
+    const std::vector<int> vertices = node_vertices(shape_);
+    for (std::size_t node = 0; node < vertices.size(); ++node) {
+      if ((*shape_.held)[node] != 0 && vertices[node] >= 0)
+        held.push_back(static_cast<std::uint32_t>(vertices[node]));
+    }
+    return held;
   }
 
   Json same_or_all() const {

@@ -48,6 +48,7 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
                  {"most", map.most}};
     json["maps"].push_back(std::move(told));
   }
+  if (!surface.holds.empty()) json["pinnedNodes"] = facts.held_nodes;
   json["vertices"] = facts.vertex_count;
   json["boundingBox"] = bounds_json(facts.placed);
   json["ownBoundingBox"] = bounds_json(facts.own);

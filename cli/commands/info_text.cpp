@@ -75,6 +75,8 @@ std::string surface_text(const Surface& surface, const SceneFacts::SurfaceFacts&
                         map_channel_words[static_cast<std::size_t>(map.channel)], map.least,
                         map.most, printable(own.file.empty() ? own.attribute : own.file));
   }
+  if (facts.held_nodes > 0)
+    text += fmt::format("    holds {}\n", counted(facts.held_nodes, "node"));
   return text;
 }
 

@@ -28,6 +28,7 @@ struct SceneFacts {
     BoundingBox own;     ///< before its transform and its cache
     std::optional<CacheSummary> cache = {};
     std::vector<MapSummary> maps = {};
+    std::size_t held_nodes = 0;  ///< by a <hold>
   };
   std::vector<SurfaceFacts> surfaces = {};
   std::vector<Preview> previews = {};

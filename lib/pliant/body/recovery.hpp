@@ -1,9 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
+#include "pliant/body/settings.hpp"
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/region/combine.hpp"
@@ -20,11 +20,8 @@ namespace pliant {
 // regions *settle*: they are put at rest. So the rim is at rest, and without forces a region never
 // grows: from some frame on it stays the same, and its motion dies out.
 
-/// 1 for each node that is unsettled (#nodes); empty if none ever is.
-using NodeMarks = std::vector<std::uint8_t>;
-
-/// The nodes that recover, ascending. `regions` are those of the forces. `marks` is workspace, and
-/// the result reuses the memory of `reuse`.
+/// The nodes that recover, ascending. `unsettled` is empty if no node ever is; `regions` are those
+/// of the forces. `marks` is workspace, and the result reuses the memory of `reuse`.
 std::vector<int> recovering_nodes(const Grid& grid, const NodeMarks& unsettled,
                                   std::span<const Region> regions, NodeMarks& marks,
                                   std::vector<int> reuse);

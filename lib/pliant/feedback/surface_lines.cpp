@@ -94,8 +94,8 @@ std::vector<int> lowest_vertices(const RestShape& shape) {
   return lowest;
 }
 
-// At the vertex in which a node has its greatest share, the first of equals.
-Field places_on_mesh(const RestShape& shape) {
+// The vertex in which each node has its greatest share, the first of equals; -1: in none.
+std::vector<int> greatest_vertices(const RestShape& shape) {
   struct Greatest {
     double share = 0;
     int vertex = -1;
@@ -116,10 +116,17 @@ Field places_on_mesh(const RestShape& shape) {
     }
     found = std::move(next);
   }
+  std::vector<int> vertices;
+  for (const Greatest& greatest : found) vertices.push_back(greatest.vertex);
+  return vertices;
+}
+
+Field places_on_mesh(const RestShape& shape) {
   Field places = shape.rest;
-  for (std::size_t node = 0; node < found.size(); ++node) {
-    if (found[node].vertex < 0) continue;
-    places.row(static_cast<Eigen::Index>(node)) = shape.mesh.positions.row(found[node].vertex);
+  const std::vector<int> vertices = greatest_vertices(shape);
+  for (std::size_t node = 0; node < vertices.size(); ++node) {
+    if (vertices[node] < 0) continue;
+    places.row(static_cast<Eigen::Index>(node)) = shape.mesh.positions.row(vertices[node]);
   }
   return places;
 }
@@ -142,6 +149,10 @@ double mean_side(const Field& points, std::span<const std::array<int, 3>> triang
 }
 
 }  // namespace
+
+std::vector<int> node_vertices(const RestShape& shape) {
+  return shape.weights ? greatest_vertices(shape) : lowest_vertices(shape);
+}
 
 void SurfaceLines::add_source(int source, double share) {
   sources.push_back(source);

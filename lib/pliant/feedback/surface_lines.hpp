@@ -36,12 +36,15 @@ struct PatchOutline {
   SurfaceLines lines;
 };
 
-/// Takes lines from the nodes of a surface to the vertices of its mesh as it is written.
-///
-/// If each vertex moves as its node, a node is its lowest vertex. The vertices of a net or of a
-/// subdivided cage are sums of nodes, which do not lie on the mesh: there a node is at the vertex
-/// in which it has the greatest share, and lines between nodes run along the closest points of the
-/// mesh at rest.
+/// The vertex of the mesh as it is written at which each node is drawn (#nodes); -1: none. If each
+/// vertex moves as its node, it is the lowest one. The vertices of a net or of a subdivided cage
+/// are sums of nodes, which do not lie on the mesh: there it is the one in which the node has the
+/// greatest share, the first of equals.
+std::vector<int> node_vertices(const RestShape& shape);
+
+/// Takes lines from the nodes of a surface to the vertices of its mesh as it is written. Nodes are
+/// at their `node_vertices`; of a net or a subdivided cage, lines between them run along the closest
+/// points of the mesh at rest.
 class LinesOnMesh {
  public:
   /// Requires: `shape` outlives it.

@@ -49,6 +49,7 @@ interface SurfaceHead extends MotionHead {
   nodes: ArrayPlace;
   triangles: ArrayPlace;
   edges: ArrayPlace;
+  pins?: ArrayPlace;
   /** Of the shape at rest, if it is animated. */
   restMotion?: MotionHead;
   marks: Marks[];
@@ -157,6 +158,8 @@ export class BakedSurface {
   readonly uvs: Float32Array;
   readonly triangles: Uint32Array;
   readonly edges: Uint32Array;
+  /** A vertex of each held node. */
+  readonly pins: Uint32Array;
   /** The node that each vertex moves as; -1: none. */
   readonly nodes: Int32Array;
   /** The first vertex of each node; -1: none. */
@@ -178,6 +181,7 @@ export class BakedSurface {
     this.uvs = floats(head.uvs);
     this.triangles = whole(head.triangles);
     this.edges = whole(head.edges);
+    this.pins = head.pins ? whole(head.pins) : new Uint32Array();
     this.nodes = signed(head.nodes);
     this.nodeVertices = new Int32Array(head.columns * head.rows).fill(-1);
     for (let vertex = this.nodes.length; vertex-- > 0; ) {

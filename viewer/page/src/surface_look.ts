@@ -37,6 +37,19 @@ export function surfaceMaterial(): THREE.MeshStandardMaterial {
   return material;
 }
 
+/** Discs of a few pixels, slightly nearer than the surface, so that it does not hide them. */
+export function pinMaterial(): THREE.PointsMaterial {
+  const material = new THREE.PointsMaterial({ size: 7, sizeAttenuation: false });
+  material.onBeforeCompile = (shader) => {
+    shader.vertexShader = shader.vertexShader.replace("#include <project_vertex>", "#include <project_vertex>\ngl_Position.z -= 0.0005 * gl_Position.w;");
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <color_fragment>",
+      "if (length(gl_PointCoord - 0.5) > 0.5) discard;\n#include <color_fragment>",
+    );
+  };
+  return material;
+}
+
 /** Colours of a ramp for the vertices' numbers; `low` has the bottom colour, `high` the top one. */
 export function paintNumbers(numbers: Float32Array, low: number, high: number, ramp: Ramp, colours: Float32Array): void {
   const { colours: shades } = ramp;

@@ -5,7 +5,7 @@ import * as THREE from "three";
 import { at, type BakedSurface } from "./bake";
 import { bends } from "./relief";
 import { displacementRamp, signedRamp, velocityRamp, type Ramp } from "./ramp";
-import { paintNumbers, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
+import { paintNumbers, pinMaterial, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
 import type { Palette } from "./theme";
 
 export type Style = "shaded" | "lines" | "wireframe";
@@ -44,6 +44,8 @@ export class SurfaceView {
   readonly signed: Float32Array;
   readonly speed: Float32Array;
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
+  /** On the held nodes. */
+  readonly pins: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
   private readonly restOffsets: Float32Array;
@@ -85,10 +87,16 @@ export class SurfaceView {
     this.lines = new THREE.LineSegments(wires, new THREE.LineBasicMaterial({ transparent: true }));
     this.lines.name = `${surface.head.name} mesh`;
 
+    const held = new THREE.BufferGeometry();
+    held.setAttribute("position", geometry.getAttribute("position"));
+    held.setIndex(new THREE.BufferAttribute(surface.pins, 1));
+    this.pins = new THREE.Points(held, pinMaterial());
+    this.pins.name = `${surface.head.name} pins`;
+
     this.group.name = `surface ${surface.head.name}`;
     this.group.matrixAutoUpdate = false;
-    this.group.add(this.mesh, this.lines);
-    for (const object of [this.mesh, this.lines]) object.frustumCulled = false; // vertices move
+    this.group.add(this.mesh, this.lines, this.pins);
+    for (const object of [this.mesh, this.lines, this.pins]) object.frustumCulled = false; // vertices move
   }
 
   /** Shows frame `index` plus `share` of the way to the next. */
@@ -138,6 +146,7 @@ export class SurfaceView {
     this.mesh.material.colorWrite = style !== "wireframe";
     this.mesh.material.depthWrite = style !== "wireframe";
     this.lines.visible = style !== "shaded";
+    this.pins.material.color.set(palette.pin);
     const { material } = this.lines;
     material.vertexColors = style === "wireframe";
     material.color.set(style === "wireframe" ? 0xffffff : palette.mesh);
@@ -171,6 +180,8 @@ export class SurfaceView {
     this.mesh.material.dispose();
     this.lines.geometry.dispose();
     this.lines.material.dispose();
+    this.pins.geometry.dispose();
+    this.pins.material.dispose();
   }
 
   private turnNormals(p: Float32Array): void {

@@ -124,6 +124,7 @@ export class Viewer {
     this.views.forEach((view, k) => {
       view.show(index, playback.share);
       view.paint(display.colour, this.ends());
+      view.pins.visible = display.hasGizmos && view.surface.pins.length > 0;
       this.regions[k].show(playback.frame, display.hasRegions, display.hasBoxes, isIdle, isShown);
       for (const { force, push } of view.surface.marksAt(playback.frame)?.forces ?? []) {
         if (push) pushes.set(force, push);
