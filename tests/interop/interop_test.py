@@ -483,6 +483,37 @@ class Walk(unittest.TestCase):
         self.assertLess(np.abs(self.load("jiggle.pc2.npy") - baked).max(), 1e-6)
 
 
+class Painted(unittest.TestCase):
+    """The face of examples/cheek.xml, whose masks Blender paints."""
+
+    def test_masks_that_blender_paints_move_a_face_that_blender_shows(self):
+        examples = os.path.join(HERE, "../../examples")
+        with tempfile.TemporaryDirectory(prefix="pliant-cheek-") as scratch:
+            def blender(*words):
+                run("blender", "-b", "--factory-startup", "-noaudio", "--python-exit-code", "1", "-P",
+                    os.path.join(examples, "blender_cheek.py"), "--", *words)
+
+            blender("paint", os.path.join(scratch, "cheek.glb"))
+            shutil.copy(os.path.join(examples, "cheek.xml"), scratch)
+            frames = []
+            for name, folder in (("here.npy", scratch), ("there.npy", examples)):
+                run(PLIANT, "bake", os.path.join(folder, "cheek.xml"), "-o", os.path.join(scratch, name),
+                    "--space", "object", "--quiet")
+                frames.append(np.load(os.path.join(scratch, name)))
+            self.assertLess(np.abs(frames[0] - frames[1]).max(), 1e-4)
+
+            moved = np.linalg.norm(frames[0] - frames[0][0], axis=2).max(axis=0)
+            x, y, z = frames[0][0].T
+            self.assertGreater(moved.max(), 0.5)
+            self.assertLess(moved[y > 1].max(), 0.05 * moved.max(), "the skull moves")
+            self.assertLess(moved[(np.abs(x) < 0.3) & (y > -1) & (z > 4)].max(), 0.07 * moved.max(), "the nose moves")
+
+            run(PLIANT, "bake", os.path.join(scratch, "cheek.xml"), "-o", os.path.join(scratch, "ring.glb"), "--quiet")
+            picture = os.path.join(PICTURES, "cheek.png")
+            blender("home", os.path.join(scratch, "ring.glb"), "12", picture)
+            self.assertGreater(os.path.getsize(picture), 10000)
+
+
 class Keys(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -515,7 +546,8 @@ def main():
     with tempfile.TemporaryDirectory() as pictures:
         PICTURES = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else pictures
         os.makedirs(PICTURES, exist_ok=True)
-        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, (Interop, FromBlender, Walk, Keys)))
+        cases = (Interop, FromBlender, Walk, Painted, Keys)
+        suite = unittest.TestSuite(map(unittest.defaultTestLoader.loadTestsFromTestCase, cases))
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     failed = len(result.failures) + len(result.errors)
     # A failure in the shared setup counts once; then no test has run.
