@@ -79,26 +79,26 @@ def values_of_an_include(folder, n):
     return ["validate", scene(folder, f'<include file="part.xml">{defines(n, "a")}</include>')]
 
 
-@kind(4000)
+@kind(1000)
 def undefined_names(folder, n):
     long = "abcdefghij"
     return ["validate", scene(folder, defines(n, long) + "".join(
         POINT.format(k, f'magnitude="${long[:9]}x{long[10:]}{k}"') for k in range(n)))]
 
 
-@kind(500)
+@kind(200)
 def targets_of_forces(folder, n):
     names = " ".join(f"t{k}" for k in range(n))
     forces = "".join(POINT.format(k, f'targets="{names}"') for k in range(10))
     return ["validate", scene(folder, f'{surfaces(n)}<group name="g" targets="{names}">{forces}</group>', surface="")]
 
 
-@kind(500)
+@kind(200)
 def driven_surfaces(folder, n):
     return ["validate", scene(folder, surfaces(n) + surfaces(n, "d", ' drivenBy="t{}"'), surface="")]
 
 
-@kind(1000)
+@kind(400)
 def forces_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(POINT.format(k, f'center="{1000 + k} 0 0"') for k in range(n)))]
 
@@ -109,32 +109,32 @@ SELECTING = NEAR + ' deformationRadius="2"'
 SMALL = '<grid columns="7" rows="7" width="6" depth="6"/><material density="1" damping="1"/>'
 
 
-@kind(200)
+@kind(80)
 def acting_forces_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(POINT.format(k, SELECTING) for k in range(n)), SMALL)]
 
 
-@kind(200)
+@kind(80)
 def acting_forces_of_a_group_in_info(folder, n):
     forces = "".join(POINT.format(k, NEAR) for k in range(n))
     return ["info", "--quiet", scene(folder, f'<group name="g" center="0 0 0" deformationRadius="2">{forces}</group>',
                                      SMALL)]
 
 
-@kind(200)
+@kind(80)
 def groups_of_an_acting_force_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(
         f'<group name="g{k}" center="0 0 0" deformationRadius="2">{POINT.format(k, NEAR)}</group>\n'
         for k in range(n)), SMALL)]
 
 
-@kind(300)
+@kind(120)
 def groups_in_info(folder, n):
     return ["info", "--quiet", scene(folder, "".join(
         f'<group name="g{k}" center="{1000 + k} 0 0">{POINT.format(k, "")}</group>\n' for k in range(n)))]
 
 
-@kind(3000)
+@kind(1000)
 def problems_on_one_line(folder, n):
     points = "".join(f'<point name="f{k}" magnitude="x"/>' for k in range(n))
     return ["validate", "--json", scene(folder, points)]
@@ -146,7 +146,7 @@ def keyed(count, keys):
                    for k in range(count))
 
 
-@kind(500)
+@kind(200)
 def format_of_many_curves(folder, n):
     return ["format", scene(folder, keyed(n, 2))]
 
@@ -215,7 +215,7 @@ def smoothing_groups(folder, n):
                 out="a.gltf")
 
 
-@kind(1500)
+@kind(600)
 def materials_of_an_obj(folder, n):
     return mesh(folder, "a.obj", "".join(f"v {k} 0 0\nv {k} 0 1\nv {k} 1 0\nusemtl m{k}\nf -3 -2 -1\n" for k in range(n)),
                 out="a.usda")
@@ -275,7 +275,7 @@ def gltf_materials(folder, n):
 
 # Output, sweeps, logs and curves
 
-@kind(100)
+@kind(30)
 def surfaces_in_one_usda(folder, n):
     return ["bake", scene(folder, surfaces(n), surface=""), "-o", os.path.join(folder, "a.usda"), "--quiet"]
 
