@@ -105,7 +105,7 @@ TEST_CASE("a body goes on from any state, whatever it has done before", "[body]"
   for_each_body([](const SurfaceKind& kind, const BodySettings& settings) {
     const std::vector<BodyState> states = states_of(kind, settings);
     const auto used = kind.make(settings, {});
-    for (const int first : {7, 0, 11, 3, 10}) {
+    for (const int first : is_sanitized ? std::vector{7, 3} : std::vector{7, 0, 11, 3, 10}) {
       CAPTURE(first);
       const auto fresh = kind.make(settings, {});
       for (Body* const body : {used.get(), fresh.get()}) {

@@ -246,6 +246,7 @@ TEST_CASE("a loop is played from the beginning of its cycle on", "[feedback][sug
 
 TEST_CASE("a loop without a cycle has no peak, and that is told", "[feedback][suggest]") {
   Scene s = poked();
+  s.surfaces[0].shape = sheet("s", 9).shape;
   s.surfaces[0].solver.loop = 20;
   s.surfaces[0].solver.integrator = Integrator::Newmark;
   s.surfaces[0].solver.region = SolvedRegion::All;
