@@ -3,7 +3,8 @@ execute_process(COMMAND "${PYTHON}" "${EXAMPLES}/${SCRIPT}" -o "${WORK}/${FILE}"
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/${FILE}" "${EXAMPLES}/${FILE}"
   COMMAND_ERROR_IS_FATAL ANY)
-if(EXISTS "${EXAMPLES}/${MESH}.pc2")
-  execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/${MESH}.pc2" "${EXAMPLES}/${MESH}.pc2"
+cmake_path(REPLACE_EXTENSION FILE pc2 OUTPUT_VARIABLE cache)
+if(EXISTS "${EXAMPLES}/${cache}")
+  execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${WORK}/${cache}" "${EXAMPLES}/${cache}"
     COMMAND_ERROR_IS_FATAL ANY)
 endif()
