@@ -44,8 +44,8 @@ Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                             : to_world(facts.scene.surfaces[k].transform.at(facts.scene.start),
                                        shape.mesh.positions)),
          bounding_box(shape.mesh.positions), cache_summary_of(shape), map_summaries_of(shape),
-         shape.held ? static_cast<std::size_t>(std::ranges::count_if(
-                          *shape.held, [](auto mark) { return mark != 0; }))
+         shape.held ? static_cast<std::size_t>(
+                          std::ranges::count_if(*shape.held, [](auto mark) { return mark != 0; }))
                     : 0});
   }
   facts.surface_memory = simulation.surface_memory();

@@ -383,7 +383,7 @@ TEST_CASE("values of a map outside 0 to 1 are told", "[feedback][warnings]") {
     CHECK(with(0, 1, 0, 1) == "");
     CHECK(with(0.25, 0.75, 0.5, 3) == "");  // factors above 1 are what high is for
     const std::string bytes = with(0, 255, 0, 1);
-    CHECK_THAT(bytes, Contains("map of s.map.density") && Contains("outside 0 to 1") &&
+    CHECK_THAT(bytes, Contains("s.map.density") && Contains("outside 0 to 1") &&
                           Contains("of 0 to 255") && Contains("high=\"0.00392157\""));
     CHECK(with(0, 255, 0, 1.0 / 255) == "");
     CHECK_THAT(with(0.5, 4, 0, 1), Contains("0.5 to 4") && Contains("high=\"0.25\""));

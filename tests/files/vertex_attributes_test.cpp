@@ -73,10 +73,13 @@ TEST_CASE("a glTF keeps the attributes of its author that are asked for", "[mesh
 }
 
 TEST_CASE("an attribute that a glTF does not have is named", "[mesh][maps]") {
-  for (const std::string name : {"_HARD", "_FAR", "_TEXT", "POSITION"})
+  for (const std::string name : {"_HARD", "_FAR", "_TEXT"})
     CHECK_THAT(
         gltf_problem(triangle_with(), name),
         Contains("meshes[0].primitives[0] has no attribute \"" + name + R"("; it has "_SOFT")"));
+  CHECK_THAT(gltf_problem(triangle_with(), "POSITION"),
+             Contains("attribute \"POSITION\" is not read, only those whose names begin with _; "
+                      "it has \"_SOFT\""));
   CHECK_THAT(gltf_problem(triangle_with(R"("componentType":5126,"count":2)"), "_SOFT"),
              Contains("has 3 vertices, but 2 numbers \"_SOFT\""));
   CHECK_THAT(gltf_problem(triangle_with(R"("componentType":5126,"count":4)"), "_SOFT"),

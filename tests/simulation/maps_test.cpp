@@ -589,7 +589,8 @@ TEST_CASE("a map that cannot be read names its line, its file and the reason",
              Contains("a .npy has a number for each node of a grid, but the mesh is read as a "
                       "surface"));
   CHECK_THAT(problem(R"(<mesh file="m.obj"/>)", R"(attribute="x")"),
-             Contains("has no attribute \"x\"; only .ply, .gltf and .glb"));
+             Contains(file + path("m.obj")) &&
+                 Contains("has no attribute \"x\"; only .ply, .gltf and .glb"));
   std::filesystem::create_directory(folder.file("d.png"));
   CHECK_THAT(problem(sheet, R"(file="d.png")"), Contains(file + path("d.png")));
 }

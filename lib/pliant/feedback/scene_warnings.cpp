@@ -18,6 +18,7 @@
 #include "pliant/feedback/warnings.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/animated_shape.hpp"
+#include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/sampling/targets.hpp"
 #include "pliant/scene/channels.hpp"
@@ -307,39 +308,16 @@ void add_drifts(std::vector<Warning>& warnings, const Scene& scene, const Surfac
   }
 }
 
-// What a map read, from the factors that it made.
 void add_map(std::vector<Warning>& warnings, const Surface& surface, const MaterialMap& map,
              const MapSummary& summary) {
-  const double scale = map.high - map.low;
-  if (scale == 0) return;
-  constexpr double rounding = 1e-9;
-  const auto is_within = [](double least, double most) {
-    return least >= -rounding && most <= 1 + rounding;
-  };
-  double least = (summary.least - map.low) / scale, most = (summary.most - map.low) / scale;
-  if (least > most) std::swap(least, most);
-  if (is_within(least, most) || is_within(summary.least, summary.most)) return;
+  std::string told = outside_unit_range(map, summary);
+  if (told.empty()) return;
   Warning& warning = warnings.emplace_back();
   warning.kind = Kind::MapOutside;
   warning.surface = surface.name;
   warning.channel = fmt::format("{}.map.{}", surface.name,
                                 map_channel_words[static_cast<std::size_t>(map.channel)]);
-  const std::string range = fmt::format("{:.6g} to {:.6g}", least, most);
-  const std::string factors = fmt::format("{:.6g} to {:.6g}", summary.least, summary.most);
-  const bool is_bytes = least > -0.5 && most > 100 && most < 255.5;
-  // So that the largest one makes 1.
-  const double high = map.low + (1 - map.low) / (is_bytes ? 255 : most);
-  warning.told =
-      is_bytes ? fmt::format(
-                     "they are {}, as of a picture of 0 to 255, and the channel is times {}; "
-                     "high=\"{:.6g}\" makes them 0 to 1",
-                     range, factors, high)
-      : most > 1 && least >= 0
-          ? fmt::format(
-                "they are {}, and the channel is times {}; high=\"{:.6g}\" makes them 0 to 1",
-                range, factors, high)
-          : fmt::format("they are {}, and the channel is times {}; low and high are for 0 and 1",
-                        range, factors);
+  warning.told = std::move(told);
 }
 
 void add_cache(std::vector<Warning>& warnings, const Scene& scene, const RestShape& shape,

@@ -43,8 +43,8 @@ struct PatchOutline {
 std::vector<int> node_vertices(const RestShape& shape);
 
 /// Takes lines from the nodes of a surface to the vertices of its mesh as it is written. Nodes are
-/// at their `node_vertices`; of a net or a subdivided cage, lines between them run along the closest
-/// points of the mesh at rest.
+/// at their `node_vertices`; of a net or a subdivided cage, lines between them run along the
+/// closest points of the mesh at rest.
 class LinesOnMesh {
  public:
   /// Requires: `shape` outlives it.

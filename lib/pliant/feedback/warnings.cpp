@@ -135,7 +135,7 @@ std::string Warning::own_message() const {
           "and it has no cache; key translate or rotate",
           force, told, when);
     case Kind::MapOutside:
-      return fmt::format("the values of the map of {} are outside 0 to 1: {}", channel, told);
+      return fmt::format("{} is a map outside 0 to 1: {}", channel, told);
   }
   return {};
 }

@@ -139,11 +139,21 @@ class MapChecker {
                    bool is_positive) {
     if (std::isfinite(value) && (is_positive ? value > 0 : value >= 0)) return true;
     complain(channel, frame,
-             fmt::format("is {} at {} by its map, but {}", value, named(at.place),
+             fmt::format("is {:.12g} at {} by its map, but {}{}", value, named(at.place),
                          !std::isfinite(value) ? "must be finite"
                          : is_positive         ? "must be greater than 0"
-                                               : "must be at least 0"));
+                                               : "must be at least 0",
+                         range_hint(channel)));
     return false;
+  }
+
+  std::string range_hint(MapChannel channel) const {
+    const auto map = std::ranges::find(surface_.maps, channel, &MaterialMap::channel);
+    if (map == surface_.maps.end()) return {};
+    const std::vector<MapSummary> all = map_summaries_of(shape_);
+    const auto summary = std::ranges::find(all, channel, &MapSummary::channel);
+    const std::string told = summary == all.end() ? "" : outside_unit_range(*map, *summary);
+    return told.empty() ? "" : "; " + told;
   }
 
   // Requires: b, d > 0.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/npy/npy_grid.hpp"
 #include "pliant/files/open_file.hpp"
@@ -31,6 +32,17 @@ struct ValueSource {
   std::string part;       // its name among the parts of its surface
   std::string_view what;  // "map"
 };
+
+// An error that names a file keeps it; the scene's place comes before.
+Error at_part(const Surface& surface, const SceneOrigin& origin, Error error,
+              const std::string& part, const std::string& attribute = {}) {
+  if (error.code == ErrorCode::Interrupted) return error;
+  const std::string file = error.file.empty() ? "" : error.file + ": ";
+  error.message = fmt::format("{}.{}: {}{}", surface.name, part, file, error.message);
+  const std::string path = fmt::format("{}.{}", surface.name, part);
+  return origin.located(std::move(error), attribute.empty() ? origin.at(surface.name, part)
+                                                            : origin.at(path, attribute));
+}
 
 // Reads the values of one map or hold after the other.
 class MapReader {
@@ -223,14 +235,8 @@ class MapReader {
     return uvs;
   }
 
-  // An error that names a file keeps it; the scene's place comes before.
   Error at_part(Error error, const std::string& part, const std::string& attribute = {}) const {
-    if (error.code == ErrorCode::Interrupted) return error;
-    const std::string file = error.file.empty() ? "" : error.file + ": ";
-    error.message = fmt::format("{}.{}: {}{}", surface_.name, part, file, error.message);
-    const std::string path = fmt::format("{}.{}", surface_.name, part);
-    return origin_.located(std::move(error), attribute.empty() ? origin_.at(surface_.name, part)
-                                                               : origin_.at(path, attribute));
+    return pliant::at_part(surface_, origin_, std::move(error), part, attribute);
   }
 
   const Surface& surface_;
@@ -288,6 +294,36 @@ std::vector<std::string> attributes_of_maps(const Surface& surface) {
       names.push_back(hold.attribute);
   }
   return names;
+}
+
+Error about_attribute(const Surface& surface, const SceneOrigin& origin, Error error,
+                      std::string_view attribute) {
+  const auto map = std::ranges::find(surface.maps, attribute, &MaterialMap::attribute);
+  if (map != surface.maps.end())
+    return at_part(surface, origin, std::move(error), name_of(map->channel), "attribute");
+  const auto hold = std::ranges::find(surface.holds, attribute, &Hold::attribute);
+  PLIANT_EXPECTS(hold != surface.holds.end());
+  const auto index = static_cast<std::size_t>(hold - surface.holds.begin());
+  return at_part(surface, origin, std::move(error), name_of_hold(index), "attribute");
+}
+
+std::string outside_unit_range(const MaterialMap& map, const MapSummary& summary) {
+  const double scale = map.high - map.low;
+  if (scale == 0) return {};
+  constexpr double rounding = 1e-9;
+  const auto is_within = [](double least, double most) {
+    return least >= -rounding && most <= 1 + rounding;
+  };
+  double least = (summary.least - map.low) / scale, most = (summary.most - map.low) / scale;
+  if (least > most) std::swap(least, most);
+  if (is_within(least, most) || is_within(summary.least, summary.most)) return {};
+  const bool is_bytes = least > -0.5 && most > 100 && most < 255.5;
+  const std::string told = fmt::format(
+      "the values of the map are {:.6g} to {:.6g}{}, and the channel is times {:.6g} to {:.6g}; ",
+      least, most, is_bytes ? ", as of a picture of 0 to 255" : "", summary.least, summary.most);
+  if (most <= 1 || least < 0) return told + "low and high are for 0 and 1";
+  return told + fmt::format("high=\"{:.6g}\" makes them 0 to 1",
+                            map.low + scale / (is_bytes ? 255 : most));
 }
 
 Result<NodeFactors> read_maps(const Surface& surface, const RestShape& shape,

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -16,6 +17,14 @@ namespace pliant {
 
 /// The names of the attributes that a surface's maps and holds ask of its mesh, each once.
 std::vector<std::string> attributes_of_maps(const Surface& surface);
+
+/// An error about an attribute of a mesh, with the line of the first map or hold that asks for it.
+Error about_attribute(const Surface& surface, const SceneOrigin& origin, Error error,
+                      std::string_view attribute);
+
+/// What the values of a map are, and what makes them 0 to 1, if neither they nor the factors that
+/// they make are within 0 to 1; otherwise empty.
+std::string outside_unit_range(const MaterialMap& map, const MapSummary& summary);
 
 /// Reads the maps of a surface and finds their factors at the nodes of its shape, whose mesh is the
 /// one that the scene names, not refined. `take` reserves that many bytes more. Errors, with the

@@ -234,10 +234,20 @@ class ShapeMaker {
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
     ahead += BytesToMake::of_references(*opened, file.root, context_.should_stop);
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-    auto mesh = read_mesh(*opened, file.object, file.uv_set, file.root, context_,
-                          attributes_of_maps(surface_));
-    if (!mesh) return fail(at_scene(mesh.error()));
-    return mesh;
+    const std::vector<std::string> attributes = attributes_of_maps(surface_);
+    const auto read_with = [&](std::span<const std::string> names) {
+      return read_mesh(*opened, file.object, file.uv_set, file.root, context_, names);
+    };
+    auto mesh = read_with(attributes);
+    if (mesh) return mesh;
+    // Whether it is about an attribute, and about which one, is known by reading the mesh without.
+    if (mesh.error().code == ErrorCode::InvalidInput && !attributes.empty() && read_with({})) {
+      for (const std::string& attribute : attributes) {
+        if (const auto alone = read_with({&attribute, 1}); !alone)
+          return fail(about_attribute(surface_, origin_, alone.error(), attribute));
+      }
+    }
+    return fail(at_scene(mesh.error()));
   }
 
   Result<RestShape> subdivided(RestShape shape, std::size_t bytes) {

@@ -178,9 +178,12 @@ class Merger {
       if (found == customs.end()) {
         std::vector<std::string> names;
         for (const auto& custom : customs) names.push_back(custom.first);
-        return invalid(fmt::format("{} has no attribute {}{}", name_of(k),
-                                   in_quotes(attribute.name),
-                                   names.empty() ? "" : "; it has " + listed_names(names)));
+        const bool is_read = attribute.name.starts_with('_');
+        return invalid(
+            fmt::format("{}{} attribute {}{}{}", name_of(k), is_read ? " has no" : ":",
+                        in_quotes(attribute.name),
+                        is_read ? "" : " is not read, only those whose names begin with _",
+                        names.empty() ? "" : "; it has " + listed_names(names)));
       }
       accessors.push_back(found->second);
     }
