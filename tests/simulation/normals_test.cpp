@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "pliant/mesh/node_faces.hpp"
 #include "support/area_vectors.hpp"
@@ -88,6 +91,55 @@ TEST_CASE("normals are those of the faces around a node, in the world", "[simula
     const Vector3d found =
         normal_at(faces, mesh.positions, inverse_linear(transform).transpose(), node);
     CHECK((found - expected.row(node).transpose()).norm() < 1e-14);
+  }
+}
+
+TEST_CASE("normals of a run have the bits of those one by one", "[simulation][normals]") {
+  Mesh hilly = hill();
+  const int kind = GENERATE(0, 1, 2, 3);
+  if (kind == 1 || kind == 2) {  // each cell the other way round, or from another corner
+    for (std::size_t first = 0; first < hilly.corner_vertices.size(); first += 4) {
+      const auto corners = hilly.corner_vertices.begin() + static_cast<std::ptrdiff_t>(first);
+      if (kind == 1) std::reverse(corners, corners + 4);
+      if (kind == 2) std::rotate(corners, corners + static_cast<int>(first / 4 % 4), corners + 4);
+    }
+  }
+  if (kind == 3) std::swap(hilly.corner_vertices[1], hilly.corner_vertices[3]);  // one is turned
+  std::vector<int> nodes(static_cast<std::size_t>(hilly.vertex_count()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  const int count = hilly.vertex_count();
+  const NodeFaces cells = node_faces(hilly, nodes, count).value();
+  CHECK((cells.grid_columns == 0) == (kind == 3));
+  if (kind < 3) CHECK(cells.is_turned == (kind != 1));  // those of a sheet are
+  NodeFaces any = cells;
+  any.grid_columns = 0;
+  const Matrix3d turn =
+      inverse_linear(make_transform({}, {10, 20, 30}, {1, -2, 0.5}, RotateOrder::Xyz)).transpose();
+  for (int first = 0; first < count; first += 7) {
+    const int size = std::min(first % 5 == 0 ? most_normals : first % most_normals, count - first);
+    Field found(size, 3);
+    normals_of_run(cells, hilly.positions, turn, first, size,
+                   {found.col(0).data(), found.col(1).data(), found.col(2).data()});
+    for (int k = 0; k < size; ++k) {
+      const Vector3d normal = found.row(k).transpose();
+      CHECK(normal == normal_at(cells, hilly.positions, turn, first + k));
+      CHECK(normal == normal_at(any, hilly.positions, turn, first + k));
+    }
+  }
+}
+
+TEST_CASE("normals of tiny and of huge faces are as those of others", "[simulation][normals]") {
+  const Mesh mesh = hill();
+  std::vector<int> nodes(static_cast<std::size_t>(mesh.vertex_count()));
+  std::iota(nodes.begin(), nodes.end(), 0);
+  const NodeFaces faces = node_faces(mesh, nodes, mesh.vertex_count()).value();
+  const Field expected = normals_of(mesh, mesh.positions);
+  for (const double scale : {1e-75, 1e-60, 1e60, 1e75}) {
+    const Field scaled = scale * mesh.positions;
+    for (int node = 0; node < mesh.vertex_count(); ++node) {
+      const Vector3d found = normal_at(faces, scaled, Matrix3d::Identity(), node);
+      CHECK((found - expected.row(node).transpose()).norm() < 1e-14);
+    }
   }
 }
 

@@ -19,6 +19,10 @@ struct NodeFaces {
   std::vector<int> node_starts;  ///< #nodes + 1
   std::vector<int> node_faces;
 
+  /// The columns of nodes, if the faces are the cells of an open grid, row by row; otherwise 0.
+  int grid_columns = 0;
+  bool is_turned = false;  ///< whether such a cell goes round from u to -v, not to v
+
   int face_count() const { return static_cast<int>(face_starts.size()) - 1; }
   int size_of(int face) const { return face_starts[face + 1] - face_starts[face]; }
   std::span<const int> nodes_of(int face) const {
@@ -39,9 +43,24 @@ Result<NodeFaces> node_faces(const Mesh& mesh, const std::vector<int>& vertex_no
                              const StopRequest& should_stop = {});
 
 /// The unit normal of a node: the sum of the vector areas of its faces, those of polygons by
-/// Newell's rule, each times `to_normals`. 0 where it is below 1e-12 of the sum of the areas.
+/// Newell's rule, times `to_normals`. 0 where it is below 1e-12 of the sum of the areas.
 /// `positions`: of the nodes (#nodes x 3). SPEC 7.
 Vector3d normal_at(const NodeFaces& faces, const Field& positions, const Matrix3d& to_normals,
                    int node);
+
+/// Where the normals of a run of nodes go, component by component.
+struct NormalRun {
+  double* x;
+  double* y;
+  double* z;
+};
+
+/// The most nodes of a run.
+inline constexpr int most_normals = 32;
+
+/// `normal_at` of `count` nodes from node `first` on, with the same bits. Requires: 0 <= count <=
+/// most_normals.
+void normals_of_run(const NodeFaces& faces, const Field& positions, const Matrix3d& to_normals,
+                    int first, int count, const NormalRun& out);
 
 }  // namespace pliant

@@ -59,10 +59,10 @@ void PlacedNodes::add_loads(int first, int count, const SampledForce& force, int
   if (!is_weighted(force)) {
     Batch normals;
     const bool has_normals = uses_normals(force);
-    for (int k = 0; has_normals && k < count; ++k) {
-      const Vector3d side = normal(first + k);
-      normals.x[k] = side.x(), normals.y[k] = side.y(), normals.z[k] = side.z();
-    }
+    static_assert(batch_size <= most_normals);
+    if (has_normals)
+      normals_of_run(*faces_, *positions_, to_normals_, first, count,
+                     {normals.x, normals.y, normals.z});
     return add_forces(force, batch(first, count), has_normals ? &normals : nullptr, first, place,
                       sums);
   }
