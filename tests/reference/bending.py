@@ -29,7 +29,8 @@ def second_difference(count, h, first, last, slopes):
 class Bending:
     """The energy of a plate on M x N nodes, numbered i * N + j."""
 
-    def __init__(self, shape, hu, hv, edges, b, c, d, poisson, tangents, goal=0):
+    def __init__(self, shape, hu, hv, edges, b, c, d, poisson, tangents, goal=0,
+                 held=False):
         m, n = shape
         self.shape, self.goal = shape, np.broadcast_to(goal, shape)
         b, c, d = (np.broadcast_to(x, shape).astype(float) for x in (b, c, d))
@@ -61,6 +62,7 @@ class Bending:
         for edge, line in zip(edges, (np.s_[0, :], np.s_[-1, :], np.s_[:, 0], np.s_[:, -1])):
             if edge != "free":
                 self.is_free[line] = False
+        self.is_free &= ~np.broadcast_to(held, shape)
 
     def weighted(self, modulus):
         return sparse.diags((self.area * modulus).ravel())

@@ -117,7 +117,7 @@ class SurfaceRun:
             for edge, line in zip(edges, EDGE_LINES):
                 if edge != "free":
                     interior[line] = False
-        return interior
+        return interior & ~self.surface.held
 
     def settle(self, regions):
         """Sets all nodes that are not interior to a region to rest."""

@@ -67,9 +67,8 @@ def node_uvs(node_of, faces, shape):
     return uvs
 
 
-def read_map(element, path_of, uvs):
-    """The factors of one <map> at the nodes: of a grid, M x N with `uvs` M x N x 2, or of a list."""
-    low, high = float(element.get("low", 0)), float(element.get("high", 1))
+def read_values(element, path_of, uvs):
+    """The values of a <map> or a <hold> at the nodes: of a grid, M x N with `uvs` M x N x 2, or of a list."""
     path = path_of(element.get("file"))
     if path.endswith(".npy"):
         values = np.load(path).T
@@ -79,7 +78,26 @@ def read_map(element, path_of, uvs):
     else:
         values = sampled(read_png(path), uvs)
     assert np.isfinite(values).all()
-    return low + (high - low) * values
+    return values
+
+
+def read_map(element, path_of, uvs):
+    """The factors of one <map>."""
+    low, high = float(element.get("low", 0)), float(element.get("high", 1))
+    return low + (high - low) * read_values(element, path_of, uvs)
+
+
+def read_holds(surface, path_of, uvs, node_of):
+    """Whether each node is held by a <hold>; `node_of`: the node of each vertex, below 0: none."""
+    held = np.zeros(uvs.shape[:-1], dtype=bool)
+    for element in surface.findall("hold"):
+        if "vertices" in element.keys():
+            for vertex in map(int, element.get("vertices").split()):
+                if np.all(node_of[vertex] >= 0):
+                    held[tuple(np.atleast_1d(node_of[vertex]))] = True
+        else:
+            held |= read_values(element, path_of, uvs) > float(element.get("above", 0.5))
+    return held
 
 
 def read_maps(material, path_of, uvs):

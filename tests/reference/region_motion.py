@@ -39,7 +39,8 @@ class RegionMotion:
         shape = self.interior[self.box].shape
         return Bending(shape, *self.spacing, self.surface.edges,
                        *(self.in_box(name) for name in ("b", "c", "d")),
-                       self.surface.sample("poisson", self.frame), tangents, self.in_box("goal"))
+                       self.surface.sample("poisson", self.frame), tangents, self.in_box("goal"),
+                       self.surface.held[self.box])
 
     def slowest_vibration(self):
         """Of the whole region."""

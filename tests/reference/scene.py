@@ -12,7 +12,7 @@ import numpy as np
 from caches import Cache, NoCache
 from carrier import Carrier
 from curves import Constant, Curve, Key
-from maps import node_uvs, read_maps
+from maps import node_uvs, read_holds, read_maps
 from triangle_mesh import TriangleMesh, read_obj_corners
 
 TRANSFORM_CHANNELS = {"translate": (0, 0, 0), "rotate": (0, 0, 0), "scale": (1, 1, 1)}
@@ -258,8 +258,12 @@ class Surface:
         if self.is_whole:
             assert self.choices["reference"] == "rest" and self.choices["combine"] == "box"
             assert self.choices["release"] == "freeze"
-        self.maps = read_maps(child_or_empty(element, "material"),
-                              lambda file: os.path.join(folder, file), self.grid.uvs)
+        def path_of(file):
+            return os.path.join(folder, file)
+
+        self.maps = read_maps(child_or_empty(element, "material"), path_of, self.grid.uvs)
+        self.held = self.grid.held = read_holds(element, path_of, self.grid.uvs, self.grid.node_of)
+        assert not self.held.any() or self.choices["combine"] != "union"
         self.has_stiffness_map = any(channel in self.maps for channel in "bcd")
         assert not (self.has_stiffness_map and self.choices["combine"] == "union")
         edges = solver.get("edges", "clamped").split()
@@ -267,7 +271,7 @@ class Surface:
         assert len(self.edges) == 4 and set(self.edges) <= {"clamped", "pinned", "free"}
         assert self.is_whole or set(self.edges) == {"clamped"}
         self.yields = self.channels["yield"] is not None
-        self.has_energy = set(self.edges) != {"clamped"} or bool(self.maps) or self.yields
+        self.has_energy = set(self.edges) != {"clamped"} or bool(self.maps) or self.yields or self.held.any()
         # An earlier start acts as the scene's start.
         self.start_frame = max(int(solver.get("startFrame", scene_start)), scene_start)
         self.start_frame -= int(solver.get("preroll", 0))

@@ -83,6 +83,7 @@ class TriangleMesh:
             self.node_of[vertex] = number[first]
         self.lowest = [used[first] for first in number]
         self.rest = vertices[self.lowest]
+        self.held = np.zeros(len(self.rest), dtype=bool)  # by a <hold>
 
         self.centre_corners, self.triangles, coordinates = [], [], []
         self.faces_of_node = collections.defaultdict(list)  # the centres' faces, by number

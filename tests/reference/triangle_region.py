@@ -101,8 +101,9 @@ class Region:
             return name[0] != "part"
         if not self.is_inside[name]:
             return True
-        is_node = name < len(self.mesh.rest)
-        return bool(is_node and self.mesh.border != "free" and self.mesh.is_border[name])
+        if name >= len(self.mesh.rest):
+            return False
+        return bool(self.mesh.held[name] or (self.mesh.border != "free" and self.mesh.is_border[name]))
 
     def sort_patches(self):
         """Rule 5: which cells move, and the numbers of each patch."""
