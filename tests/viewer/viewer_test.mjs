@@ -636,6 +636,39 @@ test("the legend has the peak of the bake", async () => {
   });
 });
 
+test("held nodes have pins that ride on the surface", async () => {
+  const scene = (shape, hold) => `<scene version="1" start="1" end="9"><surface name="s">${shape}<material density="0.5" damping="1"/>${hold}
+    <transform><animate attribute="translate"><key frame="1" value="0 0 0"/><key frame="9" value="1 2 0"/></animate></transform><solver region="all"/></surface>
+    <uniform name="push" magnitude="40" direction="0 1 0" forceRadius="99"/></scene>`;
+  const sheet = '<grid columns="9" rows="9" width="8" depth="8"/>';
+  const held = [30, 50, 40];
+  writeFileSync(inFolder("pins.xml"), scene(sheet, `<hold vertices="${held.join(" ")}"/>`));
+  writeFileSync(inFolder("none.xml"), scene(sheet, ""));
+  await withPage(pageOf(inFolder("pins.xml")), {}, async (page) => {
+    await goTo(page, 9);
+    const seen = await page.evaluate(() => {
+      const [view] = window.pliant.viewer.views;
+      const { pins } = view;
+      return { pins: [...view.surface.pins], drawn: pins.visible && pins.geometry.index.count, displaced: [...view.surface.pins].map((k) => view.displacement[k]), most: Math.max(...view.displacement) };
+    });
+    assert.deepEqual(seen.pins, [...held].sort((a, b) => a - b));
+    assert.equal(seen.drawn, held.length);
+    assert.ok(Math.max(...seen.displaced) < 1e-3 * seen.most, "a held node is displaced");
+    assert.ok((await page.locator("#legend-inks span").allTextContents()).includes("is held"));
+    await page.keyboard.press("g");
+    assert.equal(await page.evaluate(() => window.pliant.viewer.views[0].pins.visible), false);
+  });
+  const pink = (name) => {
+    run("view", inFolder(`${name}.xml`), "--png", `${name}.png`, "--size", "480x320", "--quiet", "--look", "legend=off&caption=off&theme=light&colour=plain");
+    const pixels = pixelsOf(`${name}.png`);
+    let count = 0;
+    for (let k = 0; k < pixels.length; k += 3) count += pixels[k] > 150 && pixels[k + 1] < 90 && pixels[k + 2] > 50 && pixels[k + 2] < 130;
+    return count;
+  };
+  assert.ok(pink("pins") > 3 * 20, "no pins in the picture");
+  assert.equal(pink("none"), 0);
+});
+
 test("the legend of some frames says of which", async () => {
   for (const [frames, words] of [["30:40", "in frames 30 to 40"], ["12", "at frame 12"]]) {
     const peak = Number(run("bake", example("sheet"), "-o", "peak.npy", "--frames", frames).match(/peak displacement ([\d.]+)/)[1]);
