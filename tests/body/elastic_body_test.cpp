@@ -125,7 +125,8 @@ TEST_CASE("a frame that is stopped changes nothing, and can be done again", "[bo
     int asked = 0, patience = 1'000'000;
     const RunContext context{.should_stop = [&] { return ++asked > patience; }};
     const auto body = kind.make(settings, context);
-    for (int frame = 0; frame < frames_stepped; ++frame) {
+    const int last = is_sanitized ? 5 : frames_stepped;
+    for (int frame = 0; frame < last; ++frame) {
       const BodyInputs inputs = inputs_at(frame, kind, settings);
       const BodyState& before = states[static_cast<std::size_t>(frame)];
       bool is_done = false;
