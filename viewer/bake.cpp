@@ -203,7 +203,7 @@ Json messages_of(const Simulation& simulation) {
     add("note", {note, note.file}, note.message);
   }
   for (const Warning& warning : simulation.warnings()) {
-    const ScenePlace place = scene.origin.place_of(place_of(warning, scene.origin));
+    const ScenePlace place = place_of(warning, scene.origin);
     add("warning", place, place.told(warning.message()));
   }
   return messages;

@@ -203,7 +203,7 @@ std::string info_json(const SceneFacts& facts) {
   }
   json["warnings"] = Json::array();
   for (const Warning& warning : facts.warnings) {
-    const ScenePlace place = scene.origin.place_of(place_of(warning, scene.origin));
+    const ScenePlace place = place_of(warning, scene.origin);
     json["warnings"].push_back({{"file", place.file},
                                 {"line", place.line > 0 ? Json(place.line) : Json(nullptr)},
                                 {"message", place.told(warning.message())}});

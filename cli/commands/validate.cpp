@@ -85,7 +85,7 @@ int validate(const std::string& file, const ValidateOptions& options, Findings* 
   if (!findings) print_warnings(warnings, scene->origin);
   if (findings) {
     for (const Warning& warning : warnings) {
-      const ScenePlace place = scene->origin.place_of(place_of(warning, scene->origin));
+      const ScenePlace place = place_of(warning, scene->origin);
       add_problem(*findings, place.file, place, "warning", place.told(warning.message()));
     }
   }

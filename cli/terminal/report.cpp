@@ -64,7 +64,7 @@ void print_warning(const ScenePlace& place, const std::string& message) {
 
 void print_warnings(std::span<const Warning> warnings, const SceneOrigin& origin) {
   for (const Warning& warning : warnings) {
-    print_warning(origin.place_of(place_of(warning, origin)), warning.message());
+    print_warning(place_of(warning, origin), warning.message());
   }
 }
 

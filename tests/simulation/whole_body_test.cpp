@@ -273,7 +273,7 @@ TEST_CASE("a whole body of which all nodes are held is told, not its tangents an
   REQUIRE(warnings.size() == 1);
   CHECK_THAT(warnings[0].message(),
              Contains("all nodes of \"s\" are held at frames 1-3: none can move"));
-  CHECK(s.origin.place_of(place_of(warnings[0], s.origin)).line == 7);
+  CHECK(place_of(warnings[0], s.origin).line == 7);
 }
 
 TEST_CASE("a whole body has no other choice of regions", "[simulation][all]") {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pliant/feedback/scene_look.hpp"
+
 namespace pliant {
 namespace {
 
@@ -25,7 +27,7 @@ RunWatch::RunWatch(const Scene& scene, std::span<const RestShape> shapes) {
     const RestShape& shape = shapes[k];
     Watched& one = surfaces_.emplace_back();
     one.name = surface.name;
-    if (!surface.enabled || surface.is_driven()) continue;
+    if (!is_solved(surface)) continue;
     const bool is_whole = surface.solver.region == SolvedRegion::All;
     one.freezes = !is_whole && surface.solver.release == Release::Freeze;
     one.diagonal = (shape.rest.colwise().maxCoeff() - shape.rest.colwise().minCoeff()).norm();

@@ -217,7 +217,7 @@ std::vector<Staying> all_staying(const Scene& scene, const Surface& surface,
   const bool is_whole = surface.solver.region == SolvedRegion::All;
   for (const SurfaceTargets::Member& member : targets.forces) {
     const Force& force = scene.forces[member.force];
-    const Group* const group = group_of(scene, force);
+    const Group* const group = targets.group_of(member, scene);
     const auto places = places_of(force);
     if (places.empty() || !force.follow.empty() ||
         std::ranges::any_of(places, [](const auto* place) { return place->is_animated(); })) {

@@ -140,7 +140,7 @@ std::optional<Stillness> stillness_of(const Scene& scene, const KeysByName& all_
   std::optional<Stillness> nearest;
   for (const SurfaceTargets::Member& member : targets.forces) {
     const Force& force = scene.forces[member.force];
-    const auto one = stillness_of(scene, all_keys, surface, force, group_of(scene, force));
+    const auto one = stillness_of(scene, all_keys, surface, force, targets.group_of(member, scene));
     if (!one) return {};
     if (!nearest || one->reason > nearest->reason) nearest = one;
   }
@@ -168,11 +168,13 @@ bool can_move(const Scene& scene, const Surface& surface, const SurfaceTargets& 
 std::set<std::string_view> named_targets(const Scene& scene) {
   std::set<std::string_view> names;
   if (scene.surfaces.size() == 1) names.insert(scene.surfaces.front().name);
+  std::set<std::string_view> used;  // groups
   for (const Force& force : scene.forces) {
     names.insert(force.targets.begin(), force.targets.end());
-    if (const Group* const group = group_of(scene, force))
-      names.insert(group->targets.begin(), group->targets.end());
+    used.insert(force.group);
   }
+  for (const Group& group : scene.groups)
+    if (used.contains(group.name)) names.insert(group.targets.begin(), group.targets.end());
   return names;
 }
 

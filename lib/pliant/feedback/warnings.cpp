@@ -22,6 +22,33 @@ std::string names_text(const std::string& first, const std::vector<std::string>&
 // Authors do not read longer lists.
 constexpr std::size_t most_ranges = 8;
 
+TextPlace text_place_of(const Warning& warning, const SceneOrigin& origin) {
+  if (!warning.channel.empty()) {
+    const std::size_t dot = warning.channel.find('.');
+    return origin.at(warning.channel.substr(0, dot), warning.channel.substr(dot + 1));
+  }
+  if (warning.kind == Warning::Kind::RadiusExceeds) return origin.at(warning.force, "forceRadius");
+  if (warning.kind == Warning::Kind::RadiusUnused)
+    return origin.at(warning.force, "deformationRadius");
+  if (warning.kind == Warning::Kind::FrozenMoving) return origin.at(warning.surface, "release");
+  if (!warning.force.empty()) return origin.at(warning.force);
+  if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
+      warning.kind == Warning::Kind::LoosePatch) {
+    return origin.at(warning.surface, "file");
+  }
+  if (warning.kind == Warning::Kind::CacheOutside) {
+    return origin.at(warning.surface, "cache");
+  }
+  if (warning.kind == Warning::Kind::NeverStarts) {
+    return origin.at(warning.surface, "startFrame");
+  }
+  if (warning.kind == Warning::Kind::AllHeld) return origin.at(warning.surface, "region");
+  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
+    if (origin.gives(warning.surface, tangent)) return origin.at(warning.surface, tangent);
+  }
+  return origin.at(warning.surface);
+}
+
 }  // namespace
 
 std::string Warning::message() const {
@@ -140,31 +167,8 @@ std::string Warning::own_message() const {
   return {};
 }
 
-TextPlace place_of(const Warning& warning, const SceneOrigin& origin) {
-  if (!warning.channel.empty()) {
-    const std::size_t dot = warning.channel.find('.');
-    return origin.at(warning.channel.substr(0, dot), warning.channel.substr(dot + 1));
-  }
-  if (warning.kind == Warning::Kind::RadiusExceeds) return origin.at(warning.force, "forceRadius");
-  if (warning.kind == Warning::Kind::RadiusUnused)
-    return origin.at(warning.force, "deformationRadius");
-  if (warning.kind == Warning::Kind::FrozenMoving) return origin.at(warning.surface, "release");
-  if (!warning.force.empty()) return origin.at(warning.force);
-  if (warning.kind == Warning::Kind::FacesLeftOut || warning.kind == Warning::Kind::FileLeftOut ||
-      warning.kind == Warning::Kind::LoosePatch) {
-    return origin.at(warning.surface, "file");
-  }
-  if (warning.kind == Warning::Kind::CacheOutside) {
-    return origin.at(warning.surface, "cache");
-  }
-  if (warning.kind == Warning::Kind::NeverStarts) {
-    return origin.at(warning.surface, "startFrame");
-  }
-  if (warning.kind == Warning::Kind::AllHeld) return origin.at(warning.surface, "region");
-  for (const char* tangent : {"su0", "su1", "sv0", "sv1"}) {
-    if (origin.gives(warning.surface, tangent)) return origin.at(warning.surface, tangent);
-  }
-  return origin.at(warning.surface);
+ScenePlace place_of(const Warning& warning, const SceneOrigin& origin) {
+  return origin.place_of(text_place_of(warning, origin));
 }
 
 }  // namespace pliant

@@ -90,6 +90,6 @@ void add_still_surfaces(std::vector<Warning>& warnings, const Scene& scene,
 
 /// The place of a warning's cause: the force, or an attribute of its surface such as its tangents
 /// or start frame.
-TextPlace place_of(const Warning& warning, const SceneOrigin& origin);
+ScenePlace place_of(const Warning& warning, const SceneOrigin& origin);
 
 }  // namespace pliant

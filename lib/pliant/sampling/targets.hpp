@@ -18,6 +18,12 @@ struct SurfaceTargets {
   };
   std::vector<Member> forces = {};
   std::vector<std::size_t> groups = {};  ///< indices in the scene
+
+  /// The group of a member; null: none.
+  const Group* group_of(const Member& member, const Scene& scene) const {
+    return member.group < 0 ? nullptr
+                            : &scene.groups[groups[static_cast<std::size_t>(member.group)]];
+  }
 };
 
 /// One for each surface. Cost: linear in the number of targets and the size of the result.
