@@ -53,6 +53,13 @@ std::string scene_around(const std::string& element, const std::string& attribut
                                       : "") +
                            (is_it ? children : ""));
   };
+  const bool is_solid = element == "sphere" || element == "capsule" || element == "box";
+  if (is_solid || element == "collider") {
+    return fmt::format(
+        "<scene start=\"1\" end=\"9\"><surface name=\"sheet\"><grid columns=\"5\" rows=\"5\"/>"
+        "</surface><collider name=\"it\"{}>{}{}</collider></scene>",
+        is_solid ? "" : attribute, is_solid ? "" : children, is_solid ? tag(element) : "<sphere/>");
+  }
   const bool is_part = element == "transform" || element == "material" || element == "tangents" ||
                        element == "solver";
   const bool is_force = !is_part && element != "path" && element != "group";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include "pliant/body/settings.hpp"
 #include "pliant/body/state.hpp"
 #include "pliant/body/step_plan.hpp"
+#include "pliant/contact/collider.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/force.hpp"
@@ -17,6 +19,12 @@
 #include "pliant/region/placed_nodes.hpp"
 
 namespace pliant {
+
+/// How a surface moves on the way to the next frame, apart from its displacement.
+struct BodyMotion {
+  Placement first, last;                         ///< of its transform
+  std::shared_ptr<const Field> next_shape = {};  ///< at rest, at the next frame; null: as now
+};
 
 /// All inputs that act on a body during one frame, sampled at the frame.
 struct BodyInputs {
@@ -40,6 +48,16 @@ struct BodyInputs {
   /// island it acts in; empty: each uses its own.
   std::vector<int> selectors = {};
 
+  /// The solids that it meets: the enabled ones that target the body, with a deformation radius of
+  /// 0 where they select nothing. Not with Reference::None, exact steps or a law.
+  std::vector<SampledCollider> colliders = {};
+  std::optional<BodyMotion> motion = {};  ///< if there are colliders
+
+  bool selects_by_colliders() const {
+    return std::ranges::any_of(
+        colliders, [](const SampledCollider& one) { return one.deformation_radius > 0; });
+  }
+
   /// Whether the damping depends on the slowest vibrations.
   bool asks_for_vibrations() const {
     return damping_ratio && *damping_ratio > 0 && dynamics.density > 0;
@@ -56,6 +74,14 @@ TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
                    const NodeFactors* factors = nullptr);
 
 class PatchPlate;
+
+/// What of a body a collider held back in a step.
+struct ContactFacts {
+  int node_count = 0;          ///< that it pushed
+  Vector3d force = {0, 0, 0};  ///< on all of them, world
+
+  friend bool operator==(const ContactFacts&, const ContactFacts&) = default;
+};
 
 /// A patch that a plan moves.
 struct MovedPatch {
@@ -93,6 +119,9 @@ class Body {
 
   /// The velocities that the last step that solved began with; #nodes x 3.
   virtual const Field& velocities_before() const = 0;
+
+  /// Of each collider of the inputs, at the end of the last step; empty: it met none.
+  virtual std::vector<ContactFacts> last_contacts() const { return {}; }
 
   /// The effect of a force, by its index in the inputs, in the step that `plan` plans for them.
   virtual Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const = 0;

@@ -10,7 +10,8 @@
 namespace pliant {
 
 Result<void> ElasticBody::step(const BodyInputs& inputs) {
-  if (inputs.forces.empty() && waits_for_forces()) {
+  contact_.begin_frame({}, {}, 1);
+  if (inputs.forces.empty() && !inputs.selects_by_colliders() && waits_for_forces()) {
     plan_ = {};
     return {};
   }
@@ -23,6 +24,10 @@ Result<void> ElasticBody::step(const BodyInputs& inputs) {
     return {};
   }
   keep_patches(inputs);
+  if (!inputs.colliders.empty()) {
+    contact_.begin_frame({inputs, rest_at(inputs), plan_.steps.count}, inputs.colliders,
+                         contact_share());
+  }
   // Builds the next state beside the current one, which is kept until the next one is complete.
   StageTimer beginning(context_.profile, Stage::StateOut);
   begin_next();
@@ -105,7 +110,13 @@ Result<void> ElasticBody::move(const BodyInputs& inputs, const Dynamics& dynamic
       take_rows(one.plastic, state_.plastic, one.state.plastic);
     }
   }
-  return advance(k);
+  const bool meets = !inputs.colliders.empty();
+  if (meets) contact_.begin_patch(one.moved);
+  interval.contact = meets ? &contact_ : nullptr;
+  auto advanced = advance(k);
+  interval.contact = nullptr;
+  if (meets) contact_.end_patch();
+  return advanced;
 }
 
 // The load that a patch begins with: that of the last solve, at nodes which it moved.

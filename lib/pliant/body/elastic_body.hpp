@@ -8,6 +8,7 @@
 
 #include "pliant/body/body.hpp"
 #include "pliant/body/patch_rows.hpp"
+#include "pliant/body/surface_contact.hpp"
 #include "pliant/core/run_context.hpp"
 
 namespace pliant {
@@ -41,6 +42,7 @@ class ElasticBody : public Body {
   Result<void> step(const BodyInputs& inputs) final;
   const StepPlan& last_step() const final { return plan_; }
   const Field& velocities_before() const final { return next_.velocities; }
+  std::vector<ContactFacts> last_contacts() const final { return contact_.facts(); }
 
  protected:
   ElasticBody(Field rest, Eigen::Index plastic_places, const BodySettings& settings,
@@ -76,6 +78,9 @@ class ElasticBody : public Body {
   virtual void find_displacement(std::size_t k) = 0;
   virtual Result<void> advance(std::size_t k) = 0;  ///< its state
 
+  /// The area by which a force of contact on a node is multiplied to be one in the world.
+  virtual double contact_share() const = 0;
+
   void begin_next();
   Result<void> solve(const BodyInputs& inputs);
   Result<Dynamics> dynamics_of(const BodyInputs& inputs, std::size_t first, std::size_t end);
@@ -85,6 +90,7 @@ class ElasticBody : public Body {
   Result<void> take();
   void mark_unsettled();
 
+  SurfaceContact contact_;
   BodyState next_;  // until it is complete; then the one before
 };
 

@@ -135,9 +135,14 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
   }
   plan.steps = steps_of(inputs, settings_, factors_.get());
   plan.is_whole = settings_.region == SolvedRegion::All;
-  const Box all = grid_.box();
+  std::vector<Box> others;
+  if (plan.is_whole) {
+    others.push_back(grid_.box());
+  } else if (inputs.selects_by_colliders()) {
+    find_met(inputs, plan, others);
+  }
   selection = reselected(std::move(selection), room.tiles, inputs.forces, settings_.combine,
-                         inputs.selectors, std::span(&all, plan.is_whole ? 1 : 0));
+                         inputs.selectors, others);
   if (plan.is_whole) {
     for (Patch& patch : selection.regions[0].patches) patch.edges = settings_.edges;
   }
@@ -160,6 +165,26 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
                           selection.patches_of_force(k));
   }
   return {};
+}
+
+// Adds the box of the nodes that each collider selects, on the current mesh.
+void GridBody::find_met(const BodyInputs& inputs, const StepPlan& plan,
+                        std::vector<Box>& boxes) const {
+  const ContactPlaces places(inputs, rest_at(inputs), plan.steps.count);
+  for (std::size_t c = 0; c < inputs.colliders.size(); ++c) {
+    LineMarks lines(grid_);
+    Box box;
+    for (int j = 0; j < grid_.rows; ++j) {
+      for (int i = 0; i < grid_.columns; ++i) {
+        const int node = grid_.node(i, j);
+        const Vector3d w = (state_.positions.row(node) - rest_.row(node)).transpose();
+        if (!(places.depth(c, node, w) > 0)) continue;
+        box.include(i, j);
+        if (!grid_.is_open()) lines.include(i, j);
+      }
+    }
+    if (!box.is_empty()) boxes.push_back(grid_.is_open() ? box : lines.box());
+  }
 }
 
 // Takes nodes that are held out of the patches of a region, which are rectangles or rings then, and

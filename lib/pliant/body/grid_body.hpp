@@ -73,6 +73,8 @@ class GridBody final : public ElasticBody {
   void find_load(const BodyInputs& inputs, std::size_t k) override;
   void find_displacement(std::size_t k) override;
   Result<void> advance(std::size_t k) override;
+  double contact_share() const override { return grid_.hu * grid_.hv; }
+  void find_met(const BodyInputs& inputs, const StepPlan& plan, std::vector<Box>& boxes) const;
 
   Grid grid_;
   SolverCache solvers_;

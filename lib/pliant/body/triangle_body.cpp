@@ -213,8 +213,16 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
     find_what_holds(inputs, selection);
     return weigh(surface, tree, inputs, selection);
   }
+  std::optional<ContactPlaces> places;
+  if (inputs.selects_by_colliders()) places.emplace(inputs, rest_at(inputs), plan.steps.count);
+  std::vector<NodeDepth> others;
+  for (std::size_t k = 0; places && k < inputs.colliders.size(); ++k) {
+    others.emplace_back([this, &places, k](int node) {
+      return places->depth(k, node, (state_.positions.row(node) - rest_.row(node)).transpose());
+    });
+  }
   LevelSet level_set =
-      find_level_set(surface, tree, inputs.transform, inputs.forces, inputs.selectors);
+      find_level_set(surface, tree, inputs.transform, inputs.forces, inputs.selectors, others);
   snap(level_set);
   plan.recovering.clear();
   plan.settling.clear();

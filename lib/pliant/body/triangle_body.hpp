@@ -100,6 +100,7 @@ class TriangleBody final : public ElasticBody {
   void find_load(const BodyInputs& inputs, std::size_t k) override;
   void find_displacement(std::size_t k) override;
   Result<void> advance(std::size_t k) override;
+  double contact_share() const override { return 1; }
 
   std::shared_ptr<const TriangleSurface> surface_;
   PointTree tree_;               // of the surface's nodes

@@ -20,6 +20,11 @@ inline double length_of(const Eigen::RowVector3d& a) {
   return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
+/// The product of two vectors. A fixed order of its terms.
+inline double dot_of(const Vector3d& a, const Vector3d& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 /// The longest vector of a field.
 struct LongestVector {
   double length = 0;     ///< finite if the vector is, whatever its square is

@@ -52,9 +52,9 @@ Result<ElementIndex> Editor::object(std::string_view name) const {
   }
   if (name == "scene") return Draft::root;
   const auto is_it = [&](const auto& thing) { return thing.name == name; };
-  const bool is_included = std::ranges::any_of(scene_.surfaces, is_it) ||
-                           std::ranges::any_of(scene_.forces, is_it) ||
-                           std::ranges::any_of(scene_.groups, is_it);
+  const bool is_included =
+      std::ranges::any_of(scene_.surfaces, is_it) || std::ranges::any_of(scene_.forces, is_it) ||
+      std::ranges::any_of(scene_.groups, is_it) || std::ranges::any_of(scene_.colliders, is_it);
   if (is_included) {
     const ScenePlace place = scene_.origin.place_of(std::string(name));
     return draft_.refuse(fmt::format("{} does not stand in this file, but in {}:{}; edit that file",

@@ -39,6 +39,7 @@ void for_each_channel_of(const Scene& scene, const Visit& visit) {
   for (const Surface& surface : scene.surfaces) thing(surface, surface.transform.rotate_order);
   for (const Force& force : scene.forces) thing(force, RotateOrder::Xyz);
   for (const Group& group : scene.groups) thing(group, RotateOrder::Xyz);
+  for (const Collider& collider : scene.colliders) thing(collider, collider.transform.rotate_order);
 }
 
 const Channel<1>& plain_channel(const Switch& channel) { return channel.channel(); }
@@ -68,6 +69,7 @@ class SceneNames {
     for (const Surface& surface : scene.surfaces) things_.insert(surface.name);
     for (const Force& force : scene.forces) things_.insert(force.name);
     for (const Group& group : scene.groups) things_.insert(group.name);
+    for (const Collider& collider : scene.colliders) things_.insert(collider.name);
   }
 
   /// Null: there is none.

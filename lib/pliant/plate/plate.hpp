@@ -74,6 +74,8 @@ struct PlateState {
   PlasticField plastic = {};
 };
 
+class StepContact;
+
 /// What moves a plate over one interval: all that stays the same while its steps run, but for the
 /// plate itself. SPEC 4.
 struct PlateInterval {
@@ -84,6 +86,9 @@ struct PlateInterval {
   Field load;
 
   std::optional<PlasticLaw> law = {};  ///< of a plate that yields; nullopt: it is elastic
+
+  /// What it meets on its way; null: nothing. Not for exact steps, nor for a plate that yields.
+  StepContact* contact = nullptr;
 
   /// What load and tangents change from, evenly over the interval; only for `Integrator::Exact`.
   Field first_load = {};

@@ -5,6 +5,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/advance.hpp"
+#include "pliant/plate/contact/advance_with_contact.hpp"
 #include "pliant/plate/rim_load.hpp"
 #include "pliant/plate/solver_factories.hpp"
 
@@ -16,7 +17,7 @@ namespace {
 class AutomaticPlateSolver final : public PlateSolver {
  public:
   AutomaticPlateSolver(SolverChoice choice, const RunContext& context)
-      : PlateSolver(context), choice_(choice) {}
+      : PlateSolver(context), choice_(choice), contact_memory_(context) {}
 
   Result<void> prepare(const PlateSystem& system) override {
     return suited(system.outline, system.stiffness, system.is_even()).prepare(system);
@@ -27,10 +28,16 @@ class AutomaticPlateSolver final : public PlateSolver {
     return solver_->solve(right_hand_sides);
   }
 
+  Result<Field> solve_roughly(const Field& right_hand_sides) override {
+    PLIANT_EXPECTS(solver_ != nullptr);
+    return solver_->solve_roughly(right_hand_sides);
+  }
+
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                              PlateState state) override {
     PlateSolver& solver =
         suited(problem.outline, problem.stiffness, problem.is_even(), steps.are_exact());
+    if (problem.contact) return meet(solver, problem, steps, std::move(state));
     if (problem.law) return advance_plastic(solver, problem, steps, std::move(state));
     return solver.advance(problem, steps, std::move(state));
   }
@@ -41,10 +48,16 @@ class AutomaticPlateSolver final : public PlateSolver {
   }
 
   SolverCounts counts() const override {
-    return solver_ ? past_counts_ + solver_->counts() : past_counts_;
+    SolverCounts counts = past_counts_;
+    if (solver_) counts = counts + solver_->counts();
+    if (whole_) counts = counts + whole_->counts();
+    return counts;
   }
 
-  std::size_t memory() const override { return solver_ ? solver_->memory() : 0; }
+  std::size_t memory() const override {
+    return (solver_ ? solver_->memory() : 0) + (whole_ ? whole_->memory() : 0) +
+           contact_memory_.columns.memory();
+  }
 
  private:
   PlateSolver& suited(const Outline& outline, const Stiffness& stiffness, bool is_even,
@@ -53,11 +66,24 @@ class AutomaticPlateSolver final : public PlateSolver {
     if (!solver_ || transforms != transforms_) {
       past_counts_ = counts();
       solver_.reset();
+      whole_.reset();
+      contact_memory_.forget();
       transforms_ = transforms;
       solver_ =
           transforms ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
     }
     return *solver_;
+  }
+
+  // Newmark's steps need two systems: of half a step, and of a whole one where something touches.
+  Result<PlateState> meet(PlateSolver& solver, const PlateProblem& problem, const TimeSteps& steps,
+                          PlateState state) {
+    if (steps.are_reflected() && !whole_) {
+      whole_ =
+          transforms_ ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
+    }
+    return advance_with_contact(solver, steps.are_reflected() ? *whole_ : solver, contact_memory_,
+                                problem, steps, std::move(state));
   }
 
   bool is_transformed(const Outline& outline, const Stiffness& stiffness, bool is_exact) const {
@@ -74,7 +100,9 @@ class AutomaticPlateSolver final : public PlateSolver {
 
   SolverChoice choice_;
   std::unique_ptr<PlateSolver> solver_;
+  std::unique_ptr<PlateSolver> whole_;  // of the same kind; null: none was needed
   bool transforms_ = false;
+  ContactMemory contact_memory_;
   SolverCounts past_counts_;  // of the solvers that were destroyed
 };
 

@@ -53,11 +53,17 @@ class PlateSolver {
   virtual Result<void> solve_for(const std::vector<int>& components, const Field& right_hand_sides,
                                  std::span<const UnknownRun> runs, Field& solution);
 
+  /// The same as `solve`, but that rounding is never corrected, so that none of the three leaves a
+  /// mark on the others.
+  virtual Result<Field> solve_roughly(const Field& right_hand_sides) {
+    return solve(right_hand_sides);
+  }
+
   /// Advances a plate over an interval as `advance_in_steps` does, which is what happens
   /// unless an implementation overrides it, to keep the state in a form of its own for all steps.
   /// Requires: the implementation overrides it, if the steps are exact.
-  /// Its profile receives the times of set-up and solve. The plate is elastic, except for the
-  /// solvers of `make_plate_solver`. Reuse and errors: those of `prepare`;
+  /// Its profile receives the times of set-up and solve. The plate is elastic and meets nothing,
+  /// except for the solvers of `make_plate_solver`. Reuse and errors: those of `prepare`;
   /// Interrupted.
   virtual Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                                      PlateState state);

@@ -181,6 +181,55 @@ struct SampleShape {
   }
 };
 
+Solid sample_solid(const Collider& collider, int frame) {
+  struct Sample {
+    int frame;
+
+    Solid operator()(const SphereChannels& sphere) const {
+      return SphereSolid{sphere.radius.at(frame)[0]};
+    }
+    Solid operator()(const CapsuleChannels& capsule) const {
+      return CapsuleSolid{capsule.radius.at(frame)[0], capsule.length.at(frame)[0]};
+    }
+    Solid operator()(const BoxChannels& box) const {
+      return BoxSolid{to_vector(box.size.at(frame)), box.round.at(frame)[0]};
+    }
+    Solid operator()(const PlaneChannels&) const { return PlaneSolid{}; }
+  };
+  return std::visit(Sample{frame}, collider.shape);
+}
+
+ColliderPose sample_pose(const Collider& collider, int frame) {
+  return {sample_solid(collider, frame), collider.transform.placement_at(frame),
+          collider.offset.at(frame)[0]};
+}
+
+// The colliders that a surface meets on the way to the next frame, and its own way.
+void sample_colliders(const Scene& scene, const SceneSampling& sampling, std::size_t index,
+                      int frame, SurfaceInputs& inputs) {
+  const Surface& surface = scene.surfaces[index];
+  inputs.colliders.clear();
+  for (const std::size_t k : sampling.targets(index).colliders) {
+    const Collider& collider = scene.colliders[k];
+    if (!collider.enabled.at(frame)) continue;
+    const bool selects = surface.solver.region == SolvedRegion::Forces;
+    inputs.body.colliders.push_back({sample_pose(collider, frame), sample_pose(collider, frame + 1),
+                                     selects ? collider.deformation_radius.at(frame)[0] : 0,
+                                     collider.friction.at(frame)[0], collider.stick.at(frame)});
+    inputs.colliders.push_back(k);
+  }
+  if (inputs.colliders.empty()) return;
+  inputs.body.motion = {surface.transform.placement_at(frame),
+                        surface.transform.placement_at(frame + 1)};
+  const AnimatedShape* const animation = sampling.animation(index);
+  if (!animation) return;
+  if (auto next = animation->nodes_at(frame + 1)) {
+    inputs.body.motion->next_shape = *std::move(next);
+  } else {
+    inputs.faults->add(next.error().message);
+  }
+}
+
 bool holds(const std::vector<std::string>& targets, const std::string& surface) {
   return targets.empty() || std::find(targets.begin(), targets.end(), surface) != targets.end();
 }
@@ -385,6 +434,7 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
   forces.clear();
   selectors.clear();
   inputs.sources.clear();
+  sample_colliders(scene, sampling, surface, frame, inputs);
 
   for (const auto& [index, place] : targets.forces) {
     const Force& force = scene.forces[index];

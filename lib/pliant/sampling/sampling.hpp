@@ -50,7 +50,8 @@ struct SurfaceInputs {
   std::vector<ForceSource> sources;     ///< of `body.forces`; the selector of a force in a group is
                                         ///< that of the group
   std::shared_ptr<ForceFaults> faults;  ///< shared by the custom forces
-  std::vector<int> group_selectors = {};  ///< reused to avoid allocations
+  std::vector<std::size_t> colliders = {};  ///< of `body.colliders`: their indices in the scene
+  std::vector<int> group_selectors = {};    ///< reused to avoid allocations
 };
 
 /// A clock for a noise with a keyed rate, in a scene that starts at `start`; null for any other

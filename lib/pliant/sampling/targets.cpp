@@ -71,6 +71,10 @@ std::vector<SurfaceTargets> targets_of(const Scene& scene) {
       targets[surface].forces.push_back({force, place});
     }
   }
+  for (std::size_t collider = 0; collider < scene.colliders.size(); ++collider) {
+    for (const std::size_t surface : surfaces.of(scene.colliders[collider].targets))
+      targets[surface].colliders.push_back(collider);
+  }
   return targets;
 }
 

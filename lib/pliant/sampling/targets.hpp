@@ -9,15 +9,16 @@ namespace pliant {
 
 // Which forces act on which surfaces, looked up by name once per scene; not for programs.
 
-/// The forces and groups that target one surface, enabled or not, in the order of the scene; none
-/// target one that is driven.
+/// The forces, groups and colliders that target one surface, enabled or not, in the order of the
+/// scene; none target one that is driven.
 struct SurfaceTargets {
   struct Member {
     std::size_t force = 0;  ///< index in the scene
     int group = -1;         ///< index of its group in `groups`; -1: none
   };
   std::vector<Member> forces = {};
-  std::vector<std::size_t> groups = {};  ///< indices in the scene
+  std::vector<std::size_t> groups = {};     ///< indices in the scene
+  std::vector<std::size_t> colliders = {};  ///< likewise
 
   /// The group of a member; null: none.
   const Group* group_of(const Member& member, const Scene& scene) const {

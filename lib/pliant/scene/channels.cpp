@@ -24,6 +24,7 @@ std::vector<NamedChannel> channels_of(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) add(surface);
   for (const Force& force : scene.forces) add(force);
   for (const Group& group : scene.groups) add(group);
+  for (const Collider& collider : scene.colliders) add(collider);
   return channels;
 }
 

@@ -55,6 +55,7 @@ std::set<std::string> animated_channels(const Scene& scene, Findings& findings) 
   add(scene.surfaces);
   add(scene.forces);
   add(scene.groups);
+  add(scene.colliders);
   return paths;
 }
 

@@ -30,19 +30,30 @@ Transform TransformChannels::at(double frame) const {
                         vector_at(scale, frame), rotate_order);
 }
 
+Placement TransformChannels::placement_at(double frame) const {
+  return {vector_at(translate, frame), vector_at(rotate, frame), vector_at(scale, frame),
+          rotate_order};
+}
+
 Matrix3d TransformChannels::rotation_at(double frame) const {
   return make_transform(Vector3d::Zero(), vector_at(rotate, frame), Vector3d::Ones(), rotate_order)
       .linear;
 }
 
 bool operator==(const Scene& a, const Scene& b) {
-  const auto& [fps, start, end, seed, surfaces, forces, groups, origin, notes] = b;
+  const auto& [fps, start, end, seed, surfaces, forces, groups, colliders, origin, notes] = b;
   return a.fps == fps && a.start == start && a.end == end && a.seed == seed &&
-         a.surfaces == surfaces && a.forces == forces && a.groups == groups;
+         a.surfaces == surfaces && a.forces == forces && a.groups == groups &&
+         a.colliders == colliders;
 }
 
 std::string_view kind_of(const Force& force) {
   return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; }, force.kind);
+}
+
+std::string_view shape_of(const Collider& collider) {
+  return std::visit([]<class Kind>(const Kind&) { return Description<Kind>::element; },
+                    collider.shape);
 }
 
 bool is_name(std::string_view text) {

@@ -60,6 +60,7 @@ struct TransformChannels {
   RotateOrder rotate_order = RotateOrder::Xyz;
 
   Transform at(double frame) const;
+  Placement placement_at(double frame) const;
   Matrix3d rotation_at(double frame) const;  ///< R alone
 
   friend bool operator==(const TransformChannels&, const TransformChannels&) = default;
@@ -315,6 +316,55 @@ struct Group {
   friend bool operator==(const Group&, const Group&) = default;
 };
 
+/// A ball round the origin of its collider.
+struct SphereChannels {
+  Channel<1> radius = 1;  ///< > 0 [length]
+
+  friend bool operator==(const SphereChannels&, const SphereChannels&) = default;
+};
+
+/// What is nearer than a radius to an axis along y, with the origin in its middle.
+struct CapsuleChannels {
+  Channel<1> radius = 0.5;  ///< > 0 [length]
+  Channel<1> length = 1;    ///< of its axis, >= 0 [length]
+
+  friend bool operator==(const CapsuleChannels&, const CapsuleChannels&) = default;
+};
+
+/// A box round the origin.
+struct BoxChannels {
+  Channel<3> size = Value<3>{1, 1, 1};  ///< > 0 [length]
+  Channel<1> round = 0;                 ///< radius of its edges, 0 to half the least size [length]
+
+  friend bool operator==(const BoxChannels&, const BoxChannels&) = default;
+};
+
+/// All that is not above y = 0.
+struct PlaneChannels {
+  friend bool operator==(const PlaneChannels&, const PlaneChannels&) = default;
+};
+
+/// A solid that surfaces meet: no node enters it. docs/model.md, "Contact".
+struct Collider {
+  std::string name;                       ///< same rules as for a force; no force has the same name
+  Switch enabled = true;                  ///< a disabled one selects and stops nothing
+  std::vector<std::string> targets = {};  ///< names of surfaces; empty: all
+  Channel<1> deformation_radius = 1;      ///< selects the region, world [length], >= 0
+  Channel<1> offset = 0;                  ///< that nodes keep from it, >= 0, world [length]
+  Channel<1> friction = 0;                ///< mu >= 0 [1]
+  Switch stick = false;                   ///< what touches is held
+  std::variant<SphereChannels, CapsuleChannels, BoxChannels, PlaneChannels> shape =
+      {};  ///< by default `SphereChannels`
+  /// Its scale multiplies the lengths of the shape but for `round`; that of a sphere or capsule is
+  /// the same along all axes, up to signs.
+  TransformChannels transform = {};
+
+  friend bool operator==(const Collider&, const Collider&) = default;
+};
+
+/// `sphere`, `capsule`, …: the name of the element of its shape.
+std::string_view shape_of(const Collider& collider);
+
 /// The most bytes of a scene file.
 inline constexpr std::size_t largest_scene_file = std::size_t{256} << 20U;
 
@@ -411,6 +461,7 @@ struct Scene {
   std::vector<Force> forces;  ///< including those in groups; summed in this order, the order of the
                               ///< file
   std::vector<Group> groups;
+  std::vector<Collider> colliders = {};  ///< met in this order, the order of the file
   SceneOrigin origin = {};
   std::vector<SceneNote> notes = {};  ///< found while reading, in the order of lines
 

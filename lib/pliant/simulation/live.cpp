@@ -119,6 +119,7 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
     }
   }
   for (Group& group : scene.groups) add_all(group);
+  for (Collider& collider : scene.colliders) add_all(collider);
   return inputs;
 }
 

@@ -153,11 +153,42 @@ class HashedValues {
     add(int{falloff_curve != nullptr});
     if (falloff_curve) add(falloff_curve->keys());
   }
+  void add(const Placement& placement) {
+    const auto& [translate, rotate, scale, order] = placement;
+    add_all(translate, rotate, scale, order);
+  }
+  void add(const SphereSolid& sphere) {
+    const auto& [radius] = sphere;
+    add(radius);
+  }
+  void add(const CapsuleSolid& capsule) {
+    const auto& [radius, length] = capsule;
+    add_all(radius, length);
+  }
+  void add(const BoxSolid& box) {
+    const auto& [size, round] = box;
+    add_all(size, round);
+  }
+  void add(const PlaneSolid&) {}
+  void add(const ColliderPose& pose) {
+    const auto& [shape, placement, offset] = pose;
+    add(std::uint64_t{shape.index()});
+    std::visit([this](const auto& kind) { add(kind); }, shape);
+    add_all(placement, offset);
+  }
+  void add(const SampledCollider& collider) {
+    const auto& [first, last, deformation_radius, friction, sticks] = collider;
+    add_all(first, last, deformation_radius, friction, int{sticks});
+  }
+  void add(const BodyMotion& motion) {
+    const auto& [first, last, next_shape] = motion;
+    add_all(first, last, next_shape);
+  }
   void add(const BodyInputs& inputs) {
     const auto& [transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, goal,
-                 frame_length, dt, forces, shape, selectors] = inputs;
+                 frame_length, dt, forces, shape, selectors, colliders, motion] = inputs;
     add_all(transform, stiffness, dynamics, damping_ratio, tangents, poisson, law, goal,
-            frame_length, dt, forces, shape, selectors);
+            frame_length, dt, forces, shape, selectors, colliders, motion);
   }
 
   Hash hash() const { return hash_of(std::string_view(bytes_)); }

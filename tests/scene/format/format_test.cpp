@@ -161,6 +161,14 @@ std::string scene_around(const std::string& element, const std::string& attribut
     }
     return name == element ? fmt::format("{} {}=\"{}\"", text, attribute, value) : text;
   };
+  const std::set<std::string> solids = {"sphere", "capsule", "box", "plane"};
+  if (element == "collider" || solids.contains(element)) {
+    const std::string solid = solids.contains(element) ? element : "sphere";
+    return fmt::format(
+        "<scene start=\"1\" end=\"9\"><surface name=\"sheet\"><grid columns=\"3\" rows=\"3\"/>"
+        "</surface>{}>{}/></collider></scene>",
+        begin("collider", " name=\"wall\""), begin(solid, ""));
+  }
   const std::set<std::string> parts = {"transform", "material", "tangents", "solver"};
   const std::set<std::string> key_parts = {"animate", "key", "loop"};
   const std::string force = is_force(element) ? element : "point";
@@ -262,8 +270,12 @@ TEST_CASE("each row that is keyable can be animated, and no other", "[scene][for
                   animate + "</path>")
         : is_force(row.element)
             ? scene_with(fmt::format("<{0} name=\"f\">{1}</{0}>", row.element, animate))
-        : row.element == "surface"
-            ? surface_with(animate)
+        : row.element == "surface" ? surface_with(animate)
+        : row.element == "collider"
+            ? scene_with("<collider name=\"c\"><sphere/>" + animate + "</collider>")
+        : row.element == "sphere" || row.element == "capsule" || row.element == "box"
+            ? scene_with(fmt::format("<collider name=\"c\"><{0}>{1}</{0}></collider>", row.element,
+                                     animate))
             : surface_with(fmt::format("<{0}>{1}</{0}>", row.element, animate));
     CAPTURE(text);
     CHECK(problems_of(text).empty() == (row.keyable == "yes"));
@@ -323,7 +335,7 @@ TEST_CASE("the examples of the page are read", "[scene][format]") {
       example += line + '\n';
     }
   }
-  CHECK(examples == 12);
+  CHECK(examples == 13);
 }
 
 }  // namespace

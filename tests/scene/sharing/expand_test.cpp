@@ -239,8 +239,8 @@ TEST_CASE("a problem is told in its file, with the chain of includes", "[scene][
           "force.xml:3: <point> center=\"1 2\": three numbers are required, not 2 (separated by "
           "spaces); included by rig.xml:3, by shot.xml:2",
           "rig.xml:4: <radial> name=\"sheet\": the name is already used at line 2; surfaces, "
-          "forces "
-          "and groups must have different names; included by shot.xml:2"});
+          "forces, "
+          "groups and colliders must have different names; included by shot.xml:2"});
 }
 
 TEST_CASE("a message about two places names both files", "[scene][expand]") {
@@ -248,16 +248,16 @@ TEST_CASE("a message about two places names both files", "[scene][expand]") {
   names.write("rig.xml", "<radial name=\"sheet\"/>");
   CHECK(names.problems() ==
         Lines{"rig.xml:1: <radial> name=\"sheet\": the name is already used at line 2 of shot.xml; "
-              "surfaces, forces and groups must have different names; included by shot.xml:3"});
+              "surfaces, forces, groups and colliders must have different names; included by "
+              "shot.xml:3"});
 
   Shot twice("<include file=\"rig.xml\"/>\n<include file=\"rig.xml\"/>");
   twice.fragment("rig.xml", sheet_xml);
-  CHECK(
-      twice.problems() ==
-      Lines{
-          "rig.xml:2: <surface> name=\"sheet\": the name is already used at line 2 of rig.xml, "
-          "included by shot.xml:2; surfaces, forces and groups must have different names; included "
-          "by shot.xml:3"});
+  CHECK(twice.problems() ==
+        Lines{"rig.xml:2: <surface> name=\"sheet\": the name is already used at line 2 of rig.xml, "
+              "included by shot.xml:2; surfaces, forces, groups and colliders must have different "
+              "names; included "
+              "by shot.xml:3"});
 
   Shot material(
       "<surface name=\"s\"><grid columns=\"3\" rows=\"3\"/><include file=\"m.xml\"/>\n"
@@ -506,7 +506,7 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
       {"<surface name=\"s\"><grid columns=\"3\" rows=\"3\"><include "
        "file=\"good.xml\"/></grid></surface>",
        {"shot.xml:2: <grid> has no element \"include\"; it belongs in scene, surface, material, "
-        "point, radial, line, uniform, vortex, noise, inertia, pressure, group"}},
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, collider"}},
       {"<include file=\"text.xml\"/>",
        {"text.xml:1: malformed XML: there is text before the root element; a file that is included "
         "must "
@@ -528,7 +528,8 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
         "fragment, "
         "scene, surface, grid, mesh, nurbs, subdivision, transform, material, map, tangents, hold, "
         "solver, "
-        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, path, falloff, "
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, collider, sphere, "
+        "capsule, box, plane, path, falloff, "
         "animate" +
         in_shot}},
       {"<include file=\"named.xml\"/>",
@@ -536,7 +537,8 @@ TEST_CASE("what is wrong with including and defining", "[scene][expand]") {
       {"<inclde file=\"a\"/>",
        {"shot.xml:2: <scene> has no element \"inclde\"; did you mean \"include\"? allowed: "
         "surface, "
-        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, include, define"}},
+        "point, radial, line, uniform, vortex, noise, inertia, pressure, group, collider, include, "
+        "define"}},
   };
   for (const Row& row : rows) {
     CAPTURE(row.body);
@@ -703,7 +705,7 @@ TEST_CASE("a problem of a file that is included often is told once", "[scene][ex
   CHECK(
       shot.problems() ==
       Lines{"a.xml:2: <scene> has no element \"nonsense\"; allowed: surface, point, radial, line, "
-            "uniform, vortex, noise, inertia, pressure, group; included by shot.xml:2",
+            "uniform, vortex, noise, inertia, pressure, group, collider; included by shot.xml:2",
             "a.xml:3: <uniform> name=\"$x\": no definition of \"x\" comes before it; "
             "included by shot.xml:2"});
   shot.fragment("a.xml", "<nonsense/>");

@@ -27,6 +27,11 @@ class SparseSolver final : public PlateSolver {
     return plate_.solve(right_hand_sides);
   }
 
+  Result<Field> solve_roughly(const Field& right_hand_sides) override {
+    PLIANT_EXPECTS(assembly_ && right_hand_sides.rows() == assembly_->size());
+    return plate_.solve_roughly(right_hand_sides);
+  }
+
   Result<PlateState> advance(const PlateProblem& problem, const TimeSteps& steps,
                              PlateState state) override {
     PLIANT_EXPECTS(is_on_nodes(problem, state));

@@ -7,6 +7,7 @@
 
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
+#include "pliant/plate/contact/contact_steps.hpp"
 #include "pliant/plate/energy/plastic_steps.hpp"
 #include "pliant/plate/solver_errors.hpp"
 #include "pliant/plate/step_loop.hpp"
@@ -19,6 +20,27 @@ double dot(const Curvature& a, const Curvature& b) {
 }
 
 }  // namespace
+
+// The plate of whole steps of backward Euler, where those of the plate itself are halves, and what
+// is kept of its inverse.
+struct TriangleContact {
+  explicit TriangleContact(SolverChoice choice, const RunContext& context)
+      : columns(context), problem(columns, context), whole(choice, context) {}
+
+  InverseColumns columns;
+  Complementarity problem;
+  double shift = -1, drag = 0;  // of the columns; shift < 0: of none
+  SparsePlate whole;
+  bool is_assembled = false;  // `whole`
+
+  // The matrix is another one.
+  void forget() {
+    columns.forget();
+    problem.forget();
+    shift = -1;
+    is_assembled = false;
+  }
+};
 
 TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
                              const RunContext& context, std::shared_ptr<const CellFactors> factors)
@@ -33,6 +55,8 @@ TrianglePlate::TrianglePlate(TriangleCells cells, std::vector<double> masses, So
       plastic_share_(context.memory) {
   PLIANT_EXPECTS(static_cast<int>(masses_.size()) <= cells_.free_points);
 }
+
+TrianglePlate::~TrianglePlate() = default;
 
 PlateWeights TrianglePlate::weights() const {
   PlateWeights weights;
@@ -78,6 +102,7 @@ Result<void> TrianglePlate::bend(const Bending& bending, double goal) {
   if (is_bent_ && bending_ == bending && goal_ == goal) return {};
   bending_ = bending;
   goal_ = goal;
+  if (contact_) contact_->forget();
   auto assembled = plate_.assemble(*this);
   is_bent_ = assembled.has_value();
   return assembled;
@@ -198,12 +223,79 @@ Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const 
       if (!first) return fail(first.error());
       forces.first = *std::move(first);
     }
-    auto done = plate_.advance(problem.dynamics, steps, forces, motion);
-    if (!done) return fail(done.error());
+    if (problem.contact) {
+      if (auto done = advance_with_contact(problem, steps, forces.last, motion); !done)
+        return fail(done.error());
+    } else {
+      auto done = plate_.advance(problem.dynamics, steps, forces, motion);
+      if (!done) return fail(done.error());
+    }
   }
   state.displacement.topRows(points) = motion.displacement;
   state.velocity = std::move(motion.velocity);
   return state;
+}
+
+// Steps until something touches are those of a plate that meets nothing.
+Result<void> TrianglePlate::advance_with_contact(const TriangleProblem& problem,
+                                                 const TimeSteps& steps, const Field& forces,
+                                                 Motion& motion) {
+  StepContact& contact = *problem.contact;
+  int number = 0;
+  const bool is_reflected = steps.are_reflected();
+  const auto touches_nothing = [&](const Field& solution) {
+    const Field& w = motion.displacement;
+    Field next = solution.topRows(w.rows());
+    if (is_reflected) next = 2 * next - w;
+    if (contact.begin(number, w, next)) return false;
+    ++number;
+    return true;
+  };
+  const auto gone = plate_.advance(problem.dynamics, steps, {{}, forces}, motion, touches_nothing);
+  if (!gone) return fail(gone.error());
+  if (*gone == steps.count) return {};
+  if (!contact_) contact_ = std::make_unique<TriangleContact>(solver_, context_);
+  const Dynamics& dynamics = problem.dynamics;
+  const double dt = steps.length, shift = dynamics.shift(dt), drag = dynamics.damping / dt;
+  SparsePlate& whole = is_reflected ? contact_->whole : plate_;
+  if (is_reflected && !contact_->is_assembled) {
+    if (auto assembled = whole.assemble(*this); !assembled) return assembled;
+    contact_->is_assembled = true;
+  }
+  if (auto ready = whole.prepare(shift, drag); !ready) return ready;
+  if (contact_->shift != shift || contact_->drag != drag) {
+    contact_->columns.forget();
+    contact_->problem.forget();
+  }
+  contact_->shift = shift;
+  contact_->drag = drag;
+  const auto plate_of = [&](SparsePlate& plate, double length) {
+    return ContactPlate{[&plate](const Field& f) { return plate.solve(f); },
+                        [&plate](const Field& f) { return plate.solve_roughly(f); },
+                        plate.terms(forces, dynamics, length), length};
+  };
+  const ContactPlate own = plate_of(whole, dt), half = plate_of(plate_, steps.solved_length());
+  for (int step = *gone; step < steps.count; ++step) {
+    if (context_.is_stopped()) return interrupted();
+    if (is_reflected && step > *gone) {
+      const auto stands = stands_without_contact(half, step, contact, motion);
+      if (!stands) return fail(stands.error());
+      if (*stands) continue;
+    }
+    if (auto stepped = step_with_contact(own, contact_->problem, step, contact, motion); !stepped)
+      return stepped;
+  }
+  return {};
+}
+
+SolverCounts TrianglePlate::counts() const {
+  return contact_ ? plate_.counts() + contact_->whole.counts() : plate_.counts();
+}
+
+std::size_t TrianglePlate::memory() const {
+  const std::size_t of_contact =
+      contact_ ? contact_->whole.memory() + contact_->columns.memory() : 0;
+  return plate_.memory() + plastic_share_.bytes() + of_contact;
 }
 
 Result<void> TrianglePlate::prepare_plasticity() {

@@ -20,6 +20,8 @@
 
 namespace pliant {
 
+struct TriangleContact;
+
 /// One plate of triangles over one interval. The norm of (8h) has `bending` for its form, so that
 /// the law's yield has the unit that it has on a grid [length/uv^2].
 struct TriangleProblem : PlateInterval {
@@ -39,6 +41,7 @@ class TrianglePlate : private PlateAssembly {
   /// the material is even.
   TrianglePlate(TriangleCells cells, std::vector<double> masses, SolverChoice choice,
                 const RunContext& context, std::shared_ptr<const CellFactors> factors = {});
+  ~TrianglePlate() override;
 
   /// Prepares to solve K + (goal + shift) M, for vibrations. Reuse: does nothing if all are those
   /// of the last call. Errors: SolverFailed if the matrix is not positive definite; OutOfMemory.
@@ -72,8 +75,8 @@ class TrianglePlate : private PlateAssembly {
 
   const RunContext& context() const { return context_; }
   SolverChoice solver() const { return solver_; }
-  SolverCounts counts() const { return plate_.counts(); }
-  std::size_t memory() const { return plate_.memory() + plastic_share_.bytes(); }
+  SolverCounts counts() const;
+  std::size_t memory() const;
 
  private:
   class FlowingTriangles;
@@ -89,6 +92,8 @@ class TrianglePlate : private PlateAssembly {
   Result<Field> reduced(const Field& forces) const;
   Field held_forces(const EdgeTangents& slopes, const Field& displacement) const;
   Result<void> prepare_plasticity();
+  Result<void> advance_with_contact(const TriangleProblem& problem, const TimeSteps& steps,
+                                    const Field& forces, Motion& motion);
   Result<void> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,
                                PlateState& state, Motion& motion);
 
@@ -114,6 +119,7 @@ class TrianglePlate : private PlateAssembly {
   double goal_ = 0;          // likewise
   bool is_bent_ = false;     // whether there is a matrix
   SparsePlate plate_;
+  std::unique_ptr<TriangleContact> contact_;  // null: it never met anything
   std::optional<Plasticity> plasticity_;
   MemoryShare plastic_share_;
 };

@@ -122,8 +122,12 @@ void add_faces_of(const TriangleSurface& surface, std::span<const int> nodes, Le
 
 LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
-                        std::span<const int> selectors) {
+                        std::span<const int> selectors, std::span<const NodeDepth> others) {
   std::vector<int> inside;
+  for (const NodeDepth& depth : others) {
+    for (int node = 0; node < surface.node_count(); ++node)
+      if (depth(node) > 0) inside.push_back(node);
+  }
   for (std::size_t k = 0; k < forces.size(); ++k) {
     if (!selects(selectors, k)) continue;
     const double radius = forces[k].deformation_radius;
@@ -148,6 +152,10 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
     for (std::size_t n = 0; n < depths.size(); ++n) {
       found.at_nodes[n] = std::max(depths[n], found.at_nodes[n]);
     }
+  }
+  for (const NodeDepth& depth : others) {
+    for (std::size_t n = 0; n < found.nodes.size(); ++n)
+      found.at_nodes[n] = std::max(std::min(depth(found.nodes[n]), deepest), found.at_nodes[n]);
   }
   found.at_centres = means_at_centres(found, found.at_nodes);
   return found;

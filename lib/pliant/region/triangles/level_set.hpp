@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -33,13 +34,16 @@ struct LevelSet {
   friend bool operator==(const LevelSet&, const LevelSet&) = default;
 };
 
+/// How deep a node lies in what selects besides forces, as phi is meant. [length]
+using NodeDepth = std::function<double(int node)>;
+
 /// Finds phi of the forces that select, on the rest positions under `transform`. `tree` is of the
 /// surface's nodes; `selectors` as in `BodyInputs`: a force that another one selects for does not
-/// count. A program's own function is called for every node. Cost: that of the nodes within reach,
-/// not of all.
+/// count. A program's own function, and each of `others`, is called for every node. Cost: that of
+/// the nodes within reach, not of all.
 LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
                         const Transform& transform, std::span<const SampledForce> forces,
-                        std::span<const int> selectors);
+                        std::span<const int> selectors, std::span<const NodeDepth> others = {});
 
 /// How deep each of `nodes` lies in a sphere around a force: radius - distance, within the bounds
 /// -1e150 and 1e150, so that it is finite however far a program's own force says it is. [length]

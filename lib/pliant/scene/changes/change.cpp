@@ -445,6 +445,7 @@ std::optional<std::string> first_adjusted_channel(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) look_at_all(surface);
   for (const Force& force : scene.forces) look_at_all(force);
   for (const Group& group : scene.groups) look_at_all(group);
+  for (const Collider& collider : scene.colliders) look_at_all(collider);
   return first;
 }
 

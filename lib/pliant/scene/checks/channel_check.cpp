@@ -56,6 +56,8 @@ class ChannelChecker {
     set_frames(sampled_frames(scene_));
     for (const Force& force : scene_.forces) check_channels(force, force);
     for (const Group& group : scene_.groups) check_channels(group, group);
+    ++last_;  // a collider goes to where it is in the next frame
+    for (const Collider& collider : scene_.colliders) check(collider);
   }
 
   std::vector<Error> take_errors() {
@@ -84,7 +86,49 @@ class ChannelChecker {
     if (kept_.contains("dt") && kept_.contains("timeScale")) check_steps(surface);
   }
 
-  // The channels of a part of a surface, or of a force or group. Notes which keep their rule.
+  void check(const Collider& collider) {
+    check_channels(collider, collider);
+    if (!kept_.contains("scale")) return;
+    if (!std::holds_alternative<PlaneChannels>(collider.shape) &&
+        !std::holds_alternative<BoxChannels>(collider.shape)) {
+      check(collider.name, "scale", collider.transform.scale,
+            [](const Value<3>& scale) { return complaint_of_uneven(scale); });
+    }
+    const auto* const box = std::get_if<BoxChannels>(&collider.shape);
+    if (box && kept_.contains("size") && kept_.contains("round")) check_round(collider, *box);
+  }
+
+  static Problem complaint_of_uneven(const Value<3>& scale) {
+    const double size = std::abs(scale[0]);
+    const auto is_equal = [&](double other) {
+      return std::abs(std::abs(other) - size) <= 1e-9 * size;
+    };
+    if (is_equal(scale[1]) && is_equal(scale[2])) return {};
+    return fmt::format("is {}, but must be equal along x, y and z: use equal scales, or a box",
+                       fmt::join(scale, " "));
+  }
+
+  void check_round(const Collider& collider, const BoxChannels& box) {
+    const Channel<3>& scale = collider.transform.scale;
+    const bool is_animated =
+        box.round.is_animated() || box.size.is_animated() || scale.is_animated();
+    const int last = is_animated ? last_ : first_;
+    for (int frame = first_; frame <= last && !poll_.after(parts_of_frame); ++frame) {
+      const double round = box.round.at(frame)[0];
+      const Value<3> size = box.size.at(frame), scales = scale.at(frame);
+      double most = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < 3; ++k) most = std::min(most, size[k] * std::abs(scales[k]) / 2);
+      if (round <= most * (1 + 1e-9)) continue;
+      return add_error(collider.name, "round", is_animated, frame,
+                       fmt::format("is {}, but must be at most {}, half the least length of the "
+                                   "box",
+                                   round, most),
+                       scene_.origin.last_of(collider.name, {"round", "size", "scale"}));
+    }
+  }
+
+  // The channels of a part of a surface, or of a force, group or collider. Notes which keep their
+  // rule.
   template <class Owner, class Part>
   void check_channels(const Owner& owner, const Part& part) {
     kept_.clear();
@@ -101,8 +145,10 @@ class ChannelChecker {
   template <class Owner, std::size_t D>
   Problem complaint(const Owner& owner, const Attribute& attribute,
                     const std::array<double, D>& value) const {
-    if constexpr (std::is_same_v<Owner, Surface>) {
+    if constexpr (std::is_same_v<Owner, Surface> || std::is_same_v<Owner, Collider>) {
       if (attribute.name == "scale") return complaint_of_scale(value);
+    }
+    if constexpr (std::is_same_v<Owner, Surface>) {
       if (attribute.unit == edge_slope) return complaint_of_tangent(owner, attribute.name, value);
       const bool has_rest = owner.solver.reference == Reference::Rest;
       if (attribute.name == "goal" && !has_rest && value[0] != 0)

@@ -23,6 +23,8 @@ std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_sto
   for (const Surface& surface : scene.surfaces) add(Description<Surface>::element, surface.name);
   for (const Force& force : scene.forces) add(kind_of(force), force.name);
   for (const Group& group : scene.groups) add(Description<Group>::element, group.name);
+  for (const Collider& collider : scene.colliders)
+    add(Description<Collider>::element, collider.name);
   xml::Findings findings(scene.origin, should_stop);
   xml::check_whole(scene, named, {}, findings);
   return findings.problems();

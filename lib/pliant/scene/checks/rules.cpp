@@ -18,6 +18,7 @@
 #include "pliant/core/text.hpp"
 #include "pliant/mesh/written/vertex_weights.hpp"
 #include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/checks/collider_rules.hpp"
 #include "pliant/scene/elements/read_elements.hpp"
 #include "pliant/scene/format/description.hpp"
 #include "pliant/scene/format/format.hpp"
@@ -65,6 +66,7 @@ class WholeChecker {
       check_follow(group);
     }
     check_targets();
+    check_colliders(scene_, is_sound_, findings_);
   }
 
  private:
@@ -513,8 +515,8 @@ class WholeChecker {
               ? fmt::format(" at {}", findings_.sources().title_of(first->second, at))
               : "";
       findings_.add_problem(
-          at, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces and groups "
-                          "must have different names",
+          at, fmt::format("<{}> name={}: the name is already used{}; surfaces, forces, groups and "
+                          "colliders must have different names",
                           element, in_quotes(name), place));
     }
   }
@@ -554,6 +556,7 @@ class WholeChecker {
     };
     for (const Force& force : scene_.forces) check(force);
     for (const Group& group : scene_.groups) check(group);
+    for (const Collider& collider : scene_.colliders) check(collider);
   }
 
   /// The nearest of the names of a scene, and the first of them.

@@ -135,13 +135,14 @@ constexpr ElementWords known_elements[] = {
     {"inflate inflation balloon blow puff", "<pressure>"},
     {"force forces poke push press touch finger locator deformer softmod cluster",
      "<point>, which pushes along one direction"},
-    {"capsule segment stroke", "<line>"},
-    {"ball sphere", "<point> or <radial> for a force, <mesh> for a shape"},
+    {"segment stroke", "<line>"},
+    {"ball", "<radial> for a force, <collider> with a <sphere> for a solid"},
+    {"collision rigidbody obstacle ground floor solid", "<collider>"},
     {"jiggle inertial motion", "<inertia>"},
     {"drag friction viscosity", "<material damping=\"…\"> in a <surface>"},
     {"forcegroup multipleforce set", "<group>"},
     {"object geometry body cloth softbody model", "<surface> with a <mesh> or a <grid>"},
-    {"plane sheet patch lattice", "<grid> in a <surface>"},
+    {"sheet patch lattice", "<grid> in a <surface>"},
     {"obj file import ply gltf fbx", "<mesh file=\"…\"> in a <surface>"},
     {"cage subdiv subsurf subdivide", "<subdivision>"},
     {"position translate rotate scale xform location", "<transform> in a <surface>"},
@@ -153,7 +154,6 @@ constexpr ElementWords known_elements[] = {
      "<animate attribute=\"…\"> with a <key> for each frame"},
     {"pointcache alembic", "cache=\"…\" of <mesh>"},
     {"variable constant parameter var", "<define>"},
-    {"collider collision obstacle", "a <point> that is keyed along: nothing collides yet"},
 };
 
 constexpr std::size_t longest_artist_word = 30;  // of both tables

@@ -201,6 +201,29 @@ Kinds kinds_of(const ShapeOf<Surface>& of) {
   return kinds;
 }
 
+Kinds kinds_of(const SolidOf<Collider>& of) {
+  Collider& collider = of.collider;
+  const auto contents = [&collider] {
+    return std::visit([](auto& shape) { return contents_of(shape); }, collider.shape);
+  };
+  Kinds kinds{.names = {},
+              .add =
+                  [&collider, contents](std::string_view name) {
+                    const std::vector<Collider> all = solid_kinds();
+                    collider.shape = std::ranges::find(all, name, [](const Collider& one) {
+                                       return pliant::shape_of(one);
+                                     })->shape;
+                    return contents();
+                  },
+              .for_each =
+                  [contents](const auto& visit) {
+                    Contents of_shape = contents();
+                    visit(of_shape);
+                  }};
+  for (const Collider& one : solid_kinds()) kinds.names.push_back(pliant::shape_of(one));
+  return kinds;
+}
+
 Kinds kinds_of(const KnotsOf& of) {
   NurbsNet& net = of.net;
   const auto contents = [&net](Along along, bool is_new) {
@@ -276,6 +299,16 @@ Kinds kinds_of(const MembersOf<Scene>& of) {
                   visit(contents);
                 }
               }};
+}
+
+std::vector<Collider> solid_kinds() {
+  const auto all = []<class... Kinds>(const std::variant<Kinds...>&) {
+    std::vector<Collider> colliders(sizeof...(Kinds));
+    std::size_t k = 0;
+    (static_cast<void>(colliders[k++].shape = Kinds{}), ...);
+    return colliders;
+  };
+  return all(Collider().shape);
 }
 
 std::vector<Force> force_kinds() {

@@ -67,12 +67,16 @@ Contents contents_of(WeightsOf of);
 Contents contents_of(NetOf<Surface> of);
 
 Kinds kinds_of(const ShapeOf<Surface>& of);
+Kinds kinds_of(const SolidOf<Collider>& of);
 Kinds kinds_of(const KnotsOf& of);
 Kinds kinds_of(const ActingIn<Scene>& of);
 Kinds kinds_of(const MembersOf<Scene>& of);
 
 /// The element of a surface's shape; empty: it is of a program, and has none.
 std::string_view shape_of(const Surface& surface);
+
+/// One shape of each kind, with its defaults, in the order of the format.
+std::vector<Collider> solid_kinds();
 
 /// One force of each kind that has an element, with its defaults, in the order of the format.
 std::vector<Force> force_kinds();

@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "pliant/scene/format/collider_description.hpp"
 #include "pliant/scene/format/force_description.hpp"
 #include "pliant/scene/format/surface_description.hpp"
 #include "pliant/scene/scene.hpp"
@@ -52,6 +53,7 @@ struct Description<Scene> {
   static void children(Visit&& child, Of& scene) {
     child(Child{.most = unlimited}, scene.surfaces);
     child(Child{.most = unlimited}, ActingIn<Of>{scene});
+    child(Child{.most = unlimited}, scene.colliders);
   }
 };
 
@@ -97,6 +99,7 @@ void for_each_part(T& thing, Visit&& visit) {
   using Thing = std::remove_const_t<T>;
   visit(thing);
   if constexpr (std::is_same_v<Thing, Force>) std::visit(visit, thing.kind);
+  if constexpr (std::is_same_v<Thing, Collider>) std::visit(visit, thing.shape);
   const auto child = [&]([[maybe_unused]] const Child& row, auto&& member) {
     using Member = std::remove_cvref_t<decltype(member)>;
     if constexpr (std::is_same_v<Thing, Surface>) {

@@ -37,6 +37,7 @@ Table all_slots(const NamedThings& things, const std::string& name) {
   if (Surface* const surface = things.surface(name)) return all_slots(*surface);
   if (Force* const force = things.force(name)) return all_slots(*force);
   if (Group* const group = things.group(name)) return all_slots(*group);
+  if (Collider* const collider = things.collider(name)) return all_slots(*collider);
   return name == Description<Scene>::element ? all_slots(things.scene()) : Table();
 }
 
@@ -44,12 +45,13 @@ const ElementFormat* format_of(std::string_view element) {
   return find_format(scene_format(), element);
 }
 
-/// The formats whose attributes a surface has.
-std::vector<const ElementFormat*> formats_of(const Surface& surface) {
-  std::vector<const ElementFormat*> formats = {format_of(Description<Surface>::element)};
+/// The formats whose attributes a thing with a shape has.
+template <class Thing>
+std::vector<const ElementFormat*> formats_of(std::string_view shape, bool is_driven) {
+  std::vector<const ElementFormat*> formats = {format_of(Description<Thing>::element)};
   for (const ChildFormat& child : formats.front()->children) {
-    if (surface.is_driven() && !child.row.is_of_driven) continue;
-    if (child.is_choice()) formats.push_back(format_of(shape_of(surface)));
+    if (is_driven && !child.row.is_of_driven) continue;
+    if (child.is_choice()) formats.push_back(format_of(shape));
     if (child.is_part) formats.push_back(format_of(child.names.front()));
   }
   std::erase(formats, nullptr);  // a mesh of a program has no element
@@ -68,8 +70,10 @@ const ElementFormat* format_of(const Force& force) {
 
 /// Those of the one that is not null, or of the scene.
 std::vector<const ElementFormat*> formats_of(const Surface* surface, const Force* force,
-                                             const Group* group, std::string_view name) {
-  if (surface) return formats_of(*surface);
+                                             const Group* group, const Collider* collider,
+                                             std::string_view name) {
+  if (surface) return formats_of<Surface>(shape_of(*surface), surface->is_driven());
+  if (collider) return formats_of<Collider>(pliant::shape_of(*collider), false);
   if (force) return {format_of(*force)};
   if (group) return {format_of(Description<Group>::element)};
   if (name == Description<Scene>::element) return {format_of(name)};
@@ -123,10 +127,11 @@ NamedThings::NamedThings(Scene& scene) : scene_(scene) {
   for (Surface& surface : scene.surfaces) surfaces_.try_emplace(surface.name, &surface);
   for (Force& force : scene.forces) forces_.try_emplace(force.name, &force);
   for (Group& group : scene.groups) groups_.try_emplace(group.name, &group);
+  for (Collider& collider : scene.colliders) colliders_.try_emplace(collider.name, &collider);
 }
 
 std::vector<const ElementFormat*> NamedThings::elements(const std::string& name) const {
-  return formats_of(surface(name), force(name), group(name), name);
+  return formats_of(surface(name), force(name), group(name), collider(name), name);
 }
 
 PathScope scope_of(const Scene& scene) {
@@ -141,12 +146,13 @@ PathScope scope_of(const Scene& scene) {
                 for (const Surface& surface : scene.surfaces) names.push_back(surface.name);
                 for (const Force& force : scene.forces) names.push_back(force.name);
                 for (const Group& group : scene.groups) names.push_back(group.name);
+                for (const Collider& collider : scene.colliders) names.push_back(collider.name);
                 return names;
               },
           .elements =
               [&scene, find](const std::string& name) {
                 return formats_of(find(scene.surfaces, name), find(scene.forces, name),
-                                  find(scene.groups, name), name);
+                                  find(scene.groups, name), find(scene.colliders, name), name);
               }};
 }
 

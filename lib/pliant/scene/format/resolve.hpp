@@ -72,6 +72,7 @@ class NamedThings {
   Surface* surface(const std::string& name) const { return found(surfaces_, name); }
   Force* force(const std::string& name) const { return found(forces_, name); }
   Group* group(const std::string& name) const { return found(groups_, name); }
+  Collider* collider(const std::string& name) const { return found(colliders_, name); }
   /// See `PathScope`.
   std::vector<const ElementFormat*> elements(const std::string& name) const;
 
@@ -88,6 +89,7 @@ class NamedThings {
   ByName<Surface> surfaces_;
   ByName<Force> forces_;
   ByName<Group> groups_;
+  ByName<Collider> colliders_;
 };
 
 /// As `resolve`, with the slot in the scene. Complaints also: the value cannot be changed.

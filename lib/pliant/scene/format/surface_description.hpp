@@ -73,7 +73,7 @@ struct Description<Surface> {
 template <>
 struct Description<TransformChannels> {
   static constexpr std::string_view element = "transform";
-  static constexpr std::string_view meaning = "Where the surface is.";
+  static constexpr std::string_view meaning = "Where the surface or collider is.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {

@@ -1,0 +1,228 @@
+#include "pliant/body/surface_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+namespace pliant {
+namespace {
+
+// Of the diagonal: how far inside a node may be and not touch, and how near it lies on a solid.
+constexpr double slack = 1e-9;
+constexpr double lying = 1e-6;
+
+double diagonal_of(const Transform& transform, const Field& nodes) {
+  const Field world = to_world(transform, nodes);
+  if (world.rows() == 0) return 0;
+  return length_of(world.colwise().maxCoeff() - world.colwise().minCoeff());
+}
+
+// How far from the origin of its frame a solid reaches with its offset.
+double reach_of(const PlacedCollider& collider) {
+  return reach(collider.kept.solid) + collider.kept.offset;
+}
+
+}  // namespace
+
+ContactPlaces::ContactPlaces(const BodyInputs& inputs, const Field& rest, int step_count)
+    : inputs_(&inputs), rest_(&rest), diagonal_(diagonal_of(inputs.transform, rest)) {
+  const std::optional<BodyMotion>& motion = inputs.motion;
+  for (int step = 0; step <= step_count; ++step) {
+    const double a = double(step) / step_count;
+    std::vector<PlacedCollider>& all = colliders_.emplace_back();
+    for (const SampledCollider& collider : inputs.colliders) all.push_back(placed(collider, a));
+    const bool moves = motion && step > 0 && !(motion->first == motion->last);
+    transforms_.push_back(moves ? make_transform(between(motion->first, motion->last, a))
+                                : inputs.transform);
+  }
+}
+
+Vector3d ContactPlaces::rest(int step, int node) const {
+  const Vector3d now = rest_->row(node).transpose();
+  if (!inputs_->motion || !inputs_->motion->next_shape || step == 0) return now;
+  const Vector3d next = inputs_->motion->next_shape->row(node).transpose();
+  const double a = double(step) / step_count();
+  return (1 - a) * now + a * next;
+}
+
+double ContactPlaces::depth(std::size_t collider, int node, const Vector3d& displacement) const {
+  const double radius = inputs_->colliders[collider].deformation_radius;
+  double depth = -std::numeric_limits<double>::infinity();
+  for (int step = 0; step <= step_count(); ++step) {
+    const PlacedCollider& one = colliders_[step][collider];
+    const Vector3d p = to_world(transforms_[step], Vector3d(rest(step, node) + displacement));
+    depth = std::max(depth, radius - std::max(0.0, nearness(one.kept, one.to_frame(p)).distance));
+  }
+  return depth;
+}
+
+const Field* ContactPlaces::next_rest() const {
+  return inputs_->motion ? inputs_->motion->next_shape.get() : nullptr;
+}
+
+void SurfaceContact::begin_frame(ContactPlaces places,
+                                 const std::vector<SampledCollider>& colliders, double share) {
+  places_ = std::move(places);
+  sampled_ = colliders;
+  share_ = share;
+  facts_.assign(colliders.size(), {});
+  step_facts_.clear();
+}
+
+void SurfaceContact::begin_patch(std::span<const RowRun> moved) {
+  nodes_.clear();
+  for (const RowRun& run : moved)
+    for (int k = 0; k < run.count; ++k) nodes_.push_back(run.node + k);
+  const auto gather = [&](const Field& nodes, Field& own) {
+    own.resize(static_cast<Eigen::Index>(nodes_.size()), 3);
+    Eigen::Index first = 0;
+    for (const RowRun& run : moved) {
+      for (int k = 0; k < 3; ++k)
+        own.col(k).segment(first, run.count) = nodes.col(k).segment(run.node, run.count);
+      first += run.count;
+    }
+  };
+  gather(places_.first_rest(), rest_);
+  next_rest_.resize(0, 3);
+  if (const Field* const next = places_.next_rest()) gather(*next, next_rest_);
+  step_facts_.clear();
+}
+
+// The unknowns in the world as a step begins.
+void SurfaceContact::place(int step, const Field& displacement, Field& world) {
+  const double a = double(step) / places_.step_count();
+  shape_ = displacement;
+  for (int k = 0; k < 3; ++k) {
+    if (next_rest_.rows() == 0 || step == 0) {
+      shape_.col(k) += rest_.col(k);
+    } else {
+      shape_.col(k) += (1 - a) * rest_.col(k) + a * next_rest_.col(k);
+    }
+  }
+  world = pliant::to_world(places_.transform(step), shape_, std::move(world));
+}
+
+bool SurfaceContact::begin(int step, const Field& from, const Field& to) {
+  step_ = step;
+  place(step, from, before_);
+  place(step + 1, to, free_);
+  after_ = free_;
+  joined_.assign(sampled_.size() * nodes_.size(), 0);
+  found_.clear();
+  rows_.clear();
+  step_facts_.assign(sampled_.size(), {});
+  return find(true);
+}
+
+bool SurfaceContact::join(const Field& to) {
+  place(step_ + 1, to, after_);
+  return find(false);
+}
+
+// Unknowns whose way may come near a collider, by unknown and collider.
+std::vector<SurfaceContact::Pair> SurfaceContact::near_pairs() const {
+  const auto count = static_cast<Eigen::Index>(nodes_.size());
+  double longest = 0;  // way of an unknown, squared
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Eigen::RowVector3d way = after_.row(k) - before_.row(k);
+    longest = std::max(longest, way[0] * way[0] + way[1] * way[1] + way[2] * way[2]);
+  }
+  longest = std::sqrt(longest);
+  std::vector<Pair> pairs;
+  for (std::size_t c = 0; c < sampled_.size(); ++c) {
+    const PlacedCollider& from = places_.colliders(step_)[c];
+    const PlacedCollider& to = places_.colliders(step_ + 1)[c];
+    const Eigen::RowVector3d middle = from.translation.transpose();
+    const double way = length_of(to.translation - from.translation);
+    const double most = (std::max(reach_of(from), reach_of(to)) + way + longest) * (1 + 1e-9);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::RowVector3d x = before_.row(k) - middle;
+      const bool is_near = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] <= most * most;
+      if (is_near) pairs.push_back({static_cast<int>(k), static_cast<int>(c)});
+    }
+  }
+  std::ranges::stable_sort(pairs, {}, &Pair::unknown);
+  return pairs;
+}
+
+// Lets pairs join that touch on their way, and at first those that lie on what sticks; whether any
+// does.
+bool SurfaceContact::find(bool is_first) {
+  bool joins = false;
+  for (const auto& [unknown, collider] : near_pairs()) {
+    std::uint8_t& joined = joined_[static_cast<std::size_t>(collider) * nodes_.size() +
+                                   static_cast<std::size_t>(unknown)];
+    if (joined) continue;
+    const SampledCollider& sampled = sampled_[static_cast<std::size_t>(collider)];
+    const PlacedCollider& from = places_.colliders(step_)[static_cast<std::size_t>(collider)];
+    const PlacedCollider& to = places_.colliders(step_ + 1)[static_cast<std::size_t>(collider)];
+    const Vector3d before = before_.row(unknown).transpose(),
+                   after = after_.row(unknown).transpose();
+    std::optional<NodeRow> row;
+    if (is_first && sampled.sticks)
+      row = lying_row_of(from, to, before, lying * places_.diagonal());
+    if (!row) row = row_of(from, to, before, after, slack * places_.diagonal());
+    if (!row) continue;
+    joined = 1;
+    joins = true;
+    row->node = unknown;
+    row->collider = collider;
+    row->sticks = sampled.sticks;
+    found_.add(*row, after);
+  }
+  if (joins) list_rows();
+  return joins;
+}
+
+void SurfaceContact::list_rows() {
+  rows_.clear();
+  for (const NodeRow& row : found_.all()) {
+    const auto collider = static_cast<std::size_t>(row.collider);
+    const PlacedCollider& from = places_.colliders(step_)[collider];
+    const Vector3d before = before_.row(row.node).transpose(),
+                   free = free_.row(row.node).transpose();
+    const Nearness near = nearness(from.kept, from.to_frame(before));
+    ContactRow& own = rows_.emplace_back();
+    own.unknown = row.node;
+    own.normal = row.normal;
+    own.lift = row.lack(free);
+    own.lies = std::abs(near.distance) <= lying * places_.diagonal();
+    own.sticks = row.sticks;
+    own.friction = sampled_[collider].friction;
+    own.slip = free - row.place;
+    own.collider = row.collider;
+  }
+}
+
+void SurfaceContact::end(const std::vector<Vector3d>& forces) {
+  step_facts_.assign(sampled_.size(), {});
+  const ContactRow* last = nullptr;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const ContactRow& row = rows_[k];
+    if (forces[k].isZero(0)) continue;
+    ContactFacts& facts = step_facts_[static_cast<std::size_t>(row.collider)];
+    facts.force += share_ * forces[k];
+    const bool is_counted = last && last->unknown == row.unknown && last->collider == row.collider;
+    if (!is_counted) ++facts.node_count;
+    last = &row;
+  }
+}
+
+void SurfaceContact::end_patch() {
+  for (std::size_t c = 0; c < step_facts_.size(); ++c) {
+    facts_[c].node_count += step_facts_[c].node_count;
+    facts_[c].force += step_facts_[c].force;
+  }
+  step_facts_.clear();
+}
+
+double SurfaceContact::tolerance() const {
+  // What rounding leaves of a place in the world is no lack.
+  constexpr double part = 1e-12, rounding = 1e-15;
+  const double farthest = free_.rows() == 0 ? 0 : free_.cwiseAbs().maxCoeff();
+  return part * places_.diagonal() + rounding * farthest;
+}
+
+}  // namespace pliant

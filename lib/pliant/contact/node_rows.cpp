@@ -1,0 +1,99 @@
+#include "pliant/contact/node_rows.hpp"
+
+#include <cmath>
+
+namespace pliant {
+namespace {
+
+// Cosines of the angle between two walls that are one, and from which on they squeeze.
+constexpr double one_wall = 0.999;
+constexpr double squeeze = -0.8;
+// The volume that the normals of three walls span at least.
+constexpr double least_volume = 0.1;
+
+double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+         a[2] * (b[0] * c[1] - b[1] * c[0]);
+}
+
+// Whether a node is so far from a solid that it does not come near it: a distance changes at most
+// as much as the node moves in the solid's frame, and the solid grows.
+bool stays_away(const PlacedCollider& from, const PlacedCollider& to, const Vector3d& x0,
+                const Vector3d& x1) {
+  const double growth = std::visit(
+      [&]<class Kind>(const Kind& kind) {
+        const auto& last = std::get<Kind>(to.kept.solid);
+        if constexpr (std::is_same_v<Kind, SphereSolid>) return std::abs(last.radius - kind.radius);
+        if constexpr (std::is_same_v<Kind, CapsuleSolid>)
+          return std::abs(last.radius - kind.radius) + std::abs(last.length - kind.length);
+        if constexpr (std::is_same_v<Kind, BoxSolid>)
+          return length_of(last.size - kind.size) + 3 * std::abs(last.round - kind.round);
+        return 0.0;
+      },
+      from.kept.solid);
+  const double most = length_of(x1 - x0) + growth + std::abs(to.kept.offset - from.kept.offset);
+  return nearness(from.kept, x0).distance > most;
+}
+
+NodeRow row_at(const PlacedCollider& to, const Contact& contact) {
+  NodeRow row;
+  row.normal = to.turned(contact.normal);
+  row.height =
+      support(to.kept.solid, contact.normal) + to.kept.offset + dot_of(row.normal, to.translation);
+  row.place = to.to_world(contact.place);
+  return row;
+}
+
+}  // namespace
+
+double NodeRow::lack(const Vector3d& at) const { return height - dot_of(normal, at); }
+
+std::optional<NodeRow> row_of(const PlacedCollider& from, const PlacedCollider& to,
+                              const Vector3d& before, const Vector3d& after, double slack) {
+  const Vector3d x0 = from.to_frame(before), x1 = to.to_frame(after);
+  if (stays_away(from, to, x0, x1)) return std::nullopt;
+  const auto contact = first_contact(from.kept, to.kept, x0, x1, slack);
+  if (!contact) return std::nullopt;
+  return row_at(to, *contact);
+}
+
+std::optional<NodeRow> lying_row_of(const PlacedCollider& from, const PlacedCollider& to,
+                                    const Vector3d& before, double near) {
+  const Vector3d x = from.to_frame(before);
+  const Nearness nearest = nearness(from.kept, x);
+  if (!(std::abs(nearest.distance) <= near)) return std::nullopt;
+  return row_at(to, {nearest.normal, x - nearest.distance * nearest.normal});
+}
+
+NodeRows::Offer NodeRows::add(const NodeRow& row, const Vector3d& at) {
+  std::vector<NodeRow>& own = rows_[row.node];
+  if (!own.empty() && own.front().sticks) return Offer::Dropped;
+  if (row.sticks) {
+    own.assign(1, row);
+    return Offer::Taken;
+  }
+  NodeRow* same = nullptr;
+  for (NodeRow& other : own) {
+    const double cosine = dot_of(row.normal, other.normal);
+    if (cosine < squeeze) return Offer::Squeezed;
+    if (cosine > one_wall && !same) same = &other;
+  }
+  if (same) {
+    if (row.lack(at) > same->lack(at)) *same = row;
+    return Offer::Same;
+  }
+  const bool fits = own.size() < 2 ||
+                    (own.size() == 2 &&
+                     std::abs(volume(own[0].normal, own[1].normal, row.normal)) >= least_volume);
+  if (!fits) return Offer::Dropped;
+  own.push_back(row);
+  return Offer::Taken;
+}
+
+std::vector<NodeRow> NodeRows::all() const {
+  std::vector<NodeRow> all;
+  for (const auto& [node, own] : rows_) all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+}  // namespace pliant

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "pliant/core/result.hpp"
+#include "pliant/core/run_context.hpp"
+#include "pliant/plate/contact/contact_matrix.hpp"
+#include "pliant/plate/contact/step_contact.hpp"
+
+namespace pliant {
+
+/// The forces of rows on a plate. Those without friction are >= 0, and those of which the force is
+/// not 0 just hold: the one solution of a linear complementarity problem. Friction resists the slip
+/// of a row by a force across its normal up to a bound, and what sticks is held by any force.
+/// docs/model.md, "Contact". Internal to plate. Sources: Judice & Pires, "An algorithm for a class
+/// of large-scale complementarity problems" (1994); Murty, "Note on a Bard-type scheme for solving
+/// the complementarity problem" (1974).
+class Complementarity {
+ public:
+  Complementarity(InverseColumns& columns, const RunContext& context)
+      : matrix_(columns, context), context_(context) {}
+
+  /// The plate's matrix is another one.
+  void forget() { matrix_.forget(); }
+
+  /// The force of each row, world. `bounds`: of the friction of each row, >= 0; empty: there is
+  /// none. `size`: #unknowns. Errors: those of the columns; SolverFailed if it does not settle;
+  /// Interrupted.
+  Result<std::vector<Vector3d>> solve(const std::vector<ContactRow>& rows,
+                                      const std::vector<double>& bounds, Eigen::Index size,
+                                      double tolerance, const InverseColumns::Solve& solve_plate);
+
+  /// More of the forces that the last `solve` found, where columns were rough: `moved` is what its
+  /// forces move each row's unknown, world. Null: none lacks more than the tolerance.
+  std::vector<Vector3d> answer_to(const std::vector<ContactRow>& rows,
+                                  const std::vector<Vector3d>& moved, double tolerance);
+
+ private:
+  // What friction does at a row.
+  struct Friction {
+    double bound = 0;  // 0: there is none
+    bool slips = false;
+    Vector3d along = {0, 0, 0};  // the slip, of length 1
+    double length = 0;           // of the slip
+  };
+  // A force that is solved for: its row, and whether it is along the normal.
+  struct Part {
+    std::size_t row;
+    bool is_normal;
+  };
+
+  void begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
+  void list_parts(const std::vector<ContactRow>& rows);
+  double lift_of(const std::vector<ContactRow>& rows, std::size_t part) const;
+  Result<void> turn(const std::vector<ContactRow>& rows, Eigen::Index size,
+                    const InverseColumns::Solve& solve_plate);
+  Vector3d way_of(const std::vector<ContactRow>& rows, std::size_t row) const;
+  std::vector<std::size_t> wrong_rows(const std::vector<ContactRow>& rows, double tolerance) const;
+  bool update_friction(const std::vector<ContactRow>& rows, double tolerance);
+
+  ContactMatrix matrix_;
+  RunContext context_;
+  std::vector<bool> pushes_;        // of each row
+  std::vector<Friction> friction_;  // of each row
+  std::vector<Part> parts_;
+  std::vector<ContactForce> along_;  // of the parts
+  std::vector<double> sizes_;        // of the parts
+  std::vector<Vector3d> forces_;     // of the rows, world
+};
+
+}  // namespace pliant
