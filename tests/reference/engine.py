@@ -6,6 +6,7 @@ Nothing is shared with the library under test.
 import numpy as np
 
 from carrier import unit_normals
+from contact import FrameContact
 from forces import GroupSphere, Transform, distances, falloff, pushes
 from maps import check_material, check_yield
 from region_motion import RegionMotion
@@ -71,7 +72,22 @@ class SurfaceRun:
         is_rest = self.surface.choices["measure"] == "rest"
         return transform.to_world(self.rest if is_rest else self.position)
 
-    def select(self, frame, points, forces, groups):
+    def contact(self, frame):
+        """The colliders that it meets in the solve at a frame; None: there are none."""
+        colliders = [one for one in self.scene.colliders
+                     if (one.targets is None or self.surface.name in one.targets)
+                     and one.enabled(frame)[0] != 0]
+        if not colliders:
+            return None
+        assert self.surface.choices["reference"] == "rest" and not self.surface.yields
+        length = self.surface.frame_length(frame, self.scene.fps)
+        count, _ = steps_of_frame(length, self.surface.sample("dt", frame),
+                                  self.surface.choices["stepping"])
+        ends = [self.surface.grid.of_nodes(self.surface.shape.at(k)) for k in (frame, frame + 1)]
+        return FrameContact(self.surface, colliders, frame, count,
+                            lambda a: (1 - a) * ends[0] + a * ends[1])
+
+    def select(self, frame, points, forces, groups, contact=None):
         """The deformation box of each force, None for none; of a group's forces, the group's."""
         own = {}
         if self.surface.is_whole:
@@ -86,6 +102,8 @@ class SurfaceRun:
             box = bounding_box(delta < float(group.deformation_radius(frame)[0]))
             own[group] = box
             own.update((force, box) for force in group.forces)
+        for collider in contact.colliders if contact else []:
+            own[collider] = bounding_box(contact.selects(collider, self.position - self.rest))
         return own
 
     def regions(self, own):
@@ -176,7 +194,8 @@ class SurfaceRun:
         transform = Transform(surface, frame)
         points = self.measured_points(transform)
         self.diagnose(frame, points, forces, groups, transform)
-        own = self.select(frame, points, forces, groups)
+        contact = self.contact(frame)
+        own = self.select(frame, points, forces, groups, contact)
         regions = self.regions(own)
         recovers = surface.choices["release"] == "recover"
         if recovers:
@@ -217,7 +236,7 @@ class SurfaceRun:
                                                   (first_tangents, tangents), length)
             else:
                 w, velocity, plastic = motion.step(start, speed, self.plastic, load, integrator,
-                                                   count, dt)
+                                                   count, dt, contact)
                 self.diagnostics.note_flow(surface.name, motion.flows,
                                            (plastic != self.plastic).any())
                 self.plastic = plastic

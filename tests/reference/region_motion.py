@@ -3,6 +3,7 @@
 import numpy as np
 
 from bending import Bending, advance_bending
+from contact import with_contact
 from exact_motion import exact_motion
 from plasticity import advance_plastic, flow_of_nodes
 from regions import common_box
@@ -52,8 +53,41 @@ class RegionMotion:
         matrix, _, _ = union_operator(self.interior, *self.spacing, self.material)
         return slowest_vibration(matrix, self.in_interior("density"))
 
-    def step(self, w, velocity, plastic, load, integrator, count, dt):
+    def step_with_contact(self, w, velocity, load, integrator, count, dt, contact):
+        """Returns w and velocity after `count` steps that meet colliders."""
+        still = {name: np.zeros(3) for name in self.tangents}
+        if not self.is_box:
+            def euler(w, velocity, load, dt, tangents=None):
+                return advance_union(w, velocity, load, self.interior, self.ends, *self.spacing,
+                                     self.material, tangents or self.tangents, 1, dt)
+            weights = np.ones(w.shape[:2])
+        else:
+            def euler(w, velocity, load, dt, tangents=None):
+                parts = [part[self.box] for part in (w, velocity, load)]
+                if self.surface.has_energy:
+                    after = advance_bending(self.bending(tangents or self.tangents), *parts,
+                                            self.in_box("density"), self.in_box("damping"), 1, dt)
+                else:
+                    after = advance(*parts, *self.spacing, self.material,
+                                    tangents or self.tangents, 1, dt)
+                results = [np.zeros_like(w), np.zeros_like(w)]
+                for result, part in zip(results, after):
+                    result[self.box] = part
+                return results
+            weights = np.ones(w.shape[:2])
+            if self.surface.has_energy:
+                weights[self.box] = self.bending(still).area
+        still_plate = np.zeros_like(w)
+        is_newmark = integrator == "newmark" and np.any(self.material["density"] > 0)
+        steps = with_contact(contact, euler,
+                             lambda load, dt: euler(still_plate, still_plate, load, dt, still)[0],
+                             self.interior, weights, is_newmark)
+        return steps(w, velocity, load, count, dt)
+
+    def step(self, w, velocity, plastic, load, integrator, count, dt, contact=None):
         """Returns w, velocity and the plastic curvatures after `count` steps."""
+        if contact:
+            return *self.step_with_contact(w, velocity, load, integrator, count, dt, contact), plastic
         if not self.is_box:
             steps = with_integrator(integrator, self.material["density"], advance_union)
             w, velocity = steps(w, velocity, load, self.interior, self.ends, *self.spacing,

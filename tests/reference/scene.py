@@ -35,6 +35,11 @@ KIND_CHANNELS = {
     "noise": {"center": (0, 0, 0), "frequency": 1, "rate": 1},
     "inertia": {"magnitude": 1},
     "pressure": {"center": (0, 0, 0)}}
+SOLID_CHANNELS = {
+    "sphere": {"radius": 1},
+    "capsule": {"radius": 0.5, "length": 1},
+    "box": {"size": (1, 1, 1), "round": 0},
+    "plane": {}}
 PLACES, DIRECTIONS = ("center", "from", "to"), ("direction", "axis")
 FALLOFFS = ("constant", "linear", "smooth", "gaussian")
 TANGENT_KINDS = ("auto", "spline", "flat", "linear", "plateau")
@@ -369,6 +374,27 @@ class Group(Follower):
         return self.carried("center", frame, self.center(frame))
 
 
+class Collider:
+    """A <collider>."""
+
+    def __init__(self, element):
+        self.name = element.get("name")
+        self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
+        self.stick = read_channel(element, element, "stick", 0, is_boolean=True)
+        self.enabled = read_channel(element, element, "enabled", 1, is_boolean=True)
+        shape, = (child for child in element if child.tag in SOLID_CHANNELS)
+        transform = child_or_empty(element, "transform")
+        self.kind, self.rotate_order = shape.tag, transform.get("rotateOrder", "xyz")
+        self.channels = {name: read_channel(element, element, name, default)
+                         for name, default in (("deformationRadius", 1), ("offset", 0), ("friction", 0))}
+        for part, defaults in ((shape, SOLID_CHANNELS[shape.tag]), (transform, TRANSFORM_CHANNELS)):
+            for name, default in defaults.items():
+                self.channels[name] = read_channel(part, part, name, default)
+
+    def sample(self, name, frame):
+        return float(self.channels[name](frame)[0])
+
+
 class Scene:
     """A whole scene."""
 
@@ -379,12 +405,14 @@ class Scene:
         self.start, self.end = int(root.get("start")), int(root.get("end"))
         seed = int(root.get("seed", 0))
         folder = os.path.dirname(os.path.abspath(path))
-        self.surfaces, self.forces, self.groups = [], [], []
+        self.surfaces, self.forces, self.groups, self.colliders = [], [], [], []
         for element in root:
             if element.tag == "surface":
                 self.surfaces.append(Surface(element, folder, self.start, self.fps))
             elif element.tag in KIND_CHANNELS:
                 self.forces.append(Force(element, False, seed))
+            elif element.tag == "collider":
+                self.colliders.append(Collider(element))
             else:
                 assert element.tag == "group", element.tag
                 self.groups.append(Group(element, seed))

@@ -1,0 +1,335 @@
+"""Colliders (docs/model.md, "Contact"): literally and slowly.
+
+First contacts are found by looking for the least of a convex function and halving intervals, forces by
+non-negative least squares.
+"""
+
+import numpy as np
+import scipy.linalg
+import scipy.optimize
+
+from forces import Transform, rotation
+
+GOLDEN = (np.sqrt(5) - 1) / 2
+
+
+def mixed(channel, frame, a):
+    """A channel at part `a` of the way from a frame to the next."""
+    return (1 - a) * channel(frame) + a * channel(frame + 1)
+
+
+class Mixed(Transform):
+    """A surface's transform on the way from a frame to the next."""
+
+    def __init__(self, surface, frame, a):
+        self.translate = mixed(surface.channels["translate"], frame, a)
+        degrees, scale = (mixed(surface.channels[name], frame, a) for name in ("rotate", "scale"))
+        self.is_identity = False
+        self.linear = rotation(surface.rotate_order, degrees) @ np.diag(scale)
+
+
+class Pose:
+    """A collider in the world: where it is, and its lengths."""
+
+    def __init__(self, collider, frame, a):
+        self.kind = collider.kind
+        at = {name: mixed(channel, frame, a) for name, channel in collider.channels.items()}
+        self.translate = at["translate"]
+        self.rotation = rotation(collider.rotate_order, at["rotate"])
+        scale = np.abs(at["scale"])
+        self.lengths = np.zeros(5)  # size or radius and length, round, offset
+        if self.kind == "box":
+            self.lengths[:3] = at["size"] * scale
+            self.lengths[3] = at["round"][0]
+        elif self.kind != "plane":
+            self.lengths[0] = at["radius"][0] * scale[0]
+            if self.kind == "capsule":
+                self.lengths[1] = at["length"][0] * scale[0]
+        self.lengths[4] = at["offset"][0]
+        self.friction = collider.sample("friction", frame)
+        self.sticks = collider.stick(frame)[0] != 0
+
+    def to_frame(self, point):
+        return self.rotation.T @ (point - self.translate)
+
+
+def gap_and_normal(kind, lengths, x):
+    """gamma and n (8q)."""
+    offset = lengths[4]
+    if kind == "plane":
+        return x[1] - offset, np.array([0.0, 1.0, 0.0])
+    if kind in ("sphere", "capsule"):
+        half = lengths[1] / 2
+        way = x - np.array([0.0, np.clip(x[1], -half, half), 0.0])
+        length = np.linalg.norm(way)
+        fallback = np.eye(3)[1 if kind == "sphere" else 0]
+        return length - lengths[0] - offset, way / length if length > 0 else fallback
+    beyond = np.abs(x) - (lengths[:3] / 2 - lengths[3])
+    signs = np.where(x < 0, -1.0, 1.0)
+    if (beyond <= 0).all():
+        k = int(np.argmax(beyond))
+        return beyond[k] - lengths[3] - offset, signs[k] * np.eye(3)[k]
+    way = np.maximum(beyond, 0) * signs
+    length = np.linalg.norm(way)
+    return length - lengths[3] - offset, way / length
+
+
+def support(kind, lengths, n):
+    if kind == "plane":
+        return 0.0
+    if kind == "box":
+        return float(np.abs(n) @ (lengths[:3] / 2 - lengths[3]) + lengths[3])
+    return abs(n[1]) * lengths[1] / 2 + lengths[0]
+
+
+def first_contact(kind, before, after, x0, x1, slack):
+    """t of the first contact on a straight way; None: there is none."""
+    def gap(t):
+        return gap_and_normal(kind, (1 - t) * before + t * after, (1 - t) * x0 + t * x1)[0]
+
+    most = np.linalg.norm(x1 - x0) + 2 * np.abs(after - before).sum()
+    if gap(0.0) > most:  # a distance changes no faster
+        return None
+    if gap(0.0) <= 0:
+        deepest = 0.0
+        if gap(0.0) >= -slack:
+            deepest = least(gap)
+        return 0.0 if gap(deepest) < -slack else None
+    lowest = least(gap)
+    if not gap(lowest) < -slack:
+        return None
+    low, high = 0.0, lowest
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if gap(middle) > 0 else (low, middle)
+    return high
+
+
+def least(gap):
+    """Where a convex function on [0, 1] is least."""
+    low, high = 0.0, 1.0
+    for _ in range(120):
+        one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        low, high = (low, other) if gap(one) < gap(other) else (one, high)
+    return min((0.0, low, high, 1.0), key=gap)
+
+
+class Row:
+    """A half-space of a node (8r); `place` is where it touched, as the collider carried it."""
+
+    def __init__(self, index, collider, normal, height, place):
+        self.index, self.collider = index, collider
+        self.normal, self.height, self.place = normal, height, place
+        self.friction, self.sticks = collider.friction, collider.sticks
+
+    def lack(self, point):
+        return self.height - self.normal @ point
+
+
+class Rows:
+    """Rows so chosen that all can be satisfied."""
+
+    def __init__(self):
+        self.of_nodes = {}
+
+    def add(self, row, point):
+        own = self.of_nodes.setdefault(row.index, [])
+        if own and own[0].sticks:
+            return
+        if row.sticks:
+            own[:] = [row]
+            return
+        if any(row.normal @ other.normal < -0.8 for other in own):
+            return
+        for k, other in enumerate(own):
+            if row.normal @ other.normal > 0.999:
+                if row.lack(point) > other.lack(point):
+                    own[k] = row
+                return
+        if len(own) > 2 or len(own) == 2 and abs(np.linalg.det(
+                [own[0].normal, own[1].normal, row.normal])) < 0.1:
+            return
+        own.append(row)
+
+    def all(self):
+        return [row for _, own in sorted(self.of_nodes.items()) for row in own]
+
+
+class FrameContact:
+    """The colliders that a surface meets in the solve at a frame; `rest(a)` are its nodes at rest."""
+
+    def __init__(self, surface, colliders, frame, count, rest):
+        self.surface, self.frame, self.count, self.rest = surface, frame, count, rest
+        self.colliders = colliders
+        world = Mixed(surface, frame, 0.0).to_world(rest(0.0)).reshape(-1, 3)
+        self.slack = 1e-9 * float(np.linalg.norm(world.ptp(axis=0)))
+        self.touched = 0
+
+    def poses(self, step):
+        return [Pose(one, self.frame, step / self.count) for one in self.colliders]
+
+    def transform(self, step):
+        return Mixed(self.surface, self.frame, step / self.count)
+
+    def world(self, step, w):
+        return self.transform(step).to_world(self.rest(step / self.count) + w)
+
+    def selects(self, collider, w):
+        """The nodes nearer to a collider than its deformation radius."""
+        radius = collider.sample("deformationRadius", self.frame)
+        chosen = np.zeros(w.shape[:-1], dtype=bool)
+        for step in range(self.count + 1):
+            pose = Pose(collider, self.frame, step / self.count)
+            for index, point in self.places(self.world(step, w)):
+                gap, _ = gap_and_normal(pose.kind, pose.lengths, pose.to_frame(point))
+                chosen[index] |= max(gap, 0.0) < radius
+        return chosen
+
+    @staticmethod
+    def places(points):
+        for index in np.ndindex(points.shape[:-1]):
+            yield index, points[index]
+
+    def touching(self, step, before, after, interior, joined, is_first):
+        """The rows of pairs of nodes and colliders that touch now."""
+        begin, end = self.poses(step), self.poses(step + 1)
+        found = []
+        for index in map(tuple, np.argwhere(interior)):
+            for k, (one, other) in enumerate(zip(begin, end)):
+                if (index, k) in joined:
+                    continue
+                x0, x1 = one.to_frame(before[index]), other.to_frame(after[index])
+                place = None
+                if is_first and one.sticks:
+                    gap, n = gap_and_normal(one.kind, one.lengths, x0)
+                    if abs(gap) <= 1e3 * self.slack:
+                        place = x0 - gap * n
+                if place is None:
+                    t = first_contact(one.kind, one.lengths, other.lengths, x0, x1, self.slack)
+                    if t is None:
+                        continue
+                    place = (1 - t) * x0 + t * x1
+                    _, n = gap_and_normal(one.kind, (1 - t) * one.lengths + t * other.lengths, place)
+                joined.add((index, k))
+                normal = other.rotation @ n
+                height = support(other.kind, other.lengths, n) + other.lengths[4]
+                found.append(Row(index, one, normal, height + normal @ other.translate,
+                                 other.rotation @ place + other.translate))
+        return found
+
+    def step(self, number, w, free, interior, response, weights):
+        """The end of a step that ends in `free` without contact. `response(node, force)`: what a
+        force on a node moves, of A; None: nothing touches."""
+        before, after = self.world(number, w), self.world(number + 1, free)
+        transform, joined, rows = self.transform(number + 1), set(), Rows()
+        world_free = after
+        found = self.touching(number, before, after, interior, joined, True)
+        if not found:
+            return None
+        forces, end = {}, free
+        for turn in range(4):
+            pressures = {row: max(row.normal @ force, 0.0) for row, force in forces.items()}
+            has_friction = any(row.friction > 0 for row in rows.all() + found)
+            if turn > 0 and not has_friction:
+                break
+            while True:
+                for row in found:
+                    rows.add(row, after[row.index])
+                moved, forces = self.pushed(rows.all(), world_free, response, weights, pressures)
+                end = free + transform.vector_to_object(moved)
+                after = self.world(number + 1, end)
+                found = self.touching(number, before, after, interior, joined, False)
+                if not found:
+                    break
+        self.touched += 1
+        return end
+
+    @staticmethod
+    def pushed(rows, free, response, weights, pressures):
+        """d of (8s) and (8t), in the world, and the forces of the rows."""
+        columns = {}
+        for row in rows:
+            if row.index not in columns:
+                columns[row.index] = response(row.index) / weights[row.index]
+        inverse = np.array([[columns[one.index][other.index] for one in rows] for other in rows])
+        inverse = (inverse + inverse.T) / 2
+        normals = np.array([row.normal for row in rows])
+        bounds = np.array([row.friction * pressures.get(row, 0.0) for row in rows])
+        sticks = np.array([row.sticks for row in rows])
+        lacks = np.array([row.lack(free[row.index]) for row in rows])
+        if not sticks.any() and not bounds.any():
+            factor = np.linalg.cholesky(inverse * (normals @ normals.T))
+            right = scipy.linalg.solve_triangular(factor, lacks, lower=True)
+            sizes, _ = scipy.optimize.nnls(factor.T, right, maxiter=100 * len(rows))
+            forces = sizes[:, None] * normals
+        else:
+            forces = projected(inverse, normals, lacks, np.array(
+                [free[row.index] - row.place for row in rows]), bounds, sticks)
+        moved = np.zeros_like(free)
+        for force, row in zip(forces, rows):
+            moved += columns[row.index][..., None] * force
+        return moved, dict(zip(rows, forces))
+
+
+def projected(inverse, normals, lacks, slips, bounds, sticks):
+    """The forces of rows by projected gradients, accelerated and begun anew where they rise."""
+    def along(vectors):
+        return (vectors * normals).sum(axis=1)
+
+    target = -lacks[:, None] * normals + slips - along(slips)[:, None] * normals
+
+    def project(forces):
+        push = along(forces)
+        across = forces - push[:, None] * normals
+        size = np.linalg.norm(across, axis=1)
+        push = np.where(sticks, push, np.maximum(push, 0))
+        kept = np.where(sticks | (size <= bounds), 1.0, bounds / np.where(size > 0, size, 1.0))
+        return push[:, None] * normals + kept[:, None] * across
+
+    step = 1 / np.linalg.eigvalsh(inverse)[-1]
+    forces = np.zeros_like(normals)
+    ahead, momentum = forces, 1.0
+    for _ in range(200000):
+        following = project(ahead - step * (inverse @ ahead + target))
+        change = following - forces
+        if ((ahead - following) * change).sum() > 0:
+            momentum = 1.0
+        faster = (1 + np.sqrt(1 + 4 * momentum**2)) / 2
+        ahead = following + (momentum - 1) / faster * change
+        forces, momentum = following, faster
+        if np.abs(change).max() <= 1e-15 * np.abs(forces).max():
+            break
+    return forces
+
+
+def with_contact(contact, euler, rigid, interior, weights, is_newmark):
+    """Steps that meet colliders. `euler(w, v, load, dt)` is one step of backward Euler, and
+    `rigid(load, dt)` what a load moves from rest where nothing is prescribed."""
+    def advance(w, velocity, load, count, dt):
+        responses = {}
+
+        def response(node):
+            if node not in responses:
+                unit = np.zeros_like(w)
+                unit[node] = 1, 0, 0
+                responses[node] = rigid(unit, dt)[..., 0]
+            return responses[node]
+
+        for number in range(count):
+            if is_newmark:
+                half, half_velocity = euler(w, velocity, load, dt / 2)
+                tried = 2 * half - w
+                if contact.step(number, w, tried, interior, response, weights) is None:
+                    w, velocity = tried, 2 * half_velocity - velocity
+                    continue
+            free, speed = euler(w, velocity, load, dt)
+            end = contact.step(number, w, free, interior, response, weights)
+            if end is None:
+                w, velocity = free, speed
+            else:
+                velocity = (end - w) / dt
+                velocity[~interior] = 0
+                w = end
+        return w, velocity
+
+    return advance
