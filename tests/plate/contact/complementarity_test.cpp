@@ -19,8 +19,11 @@ struct Springs {
     inverse = part * part.transpose() + 0.1 * Eigen::MatrixXd::Identity(count, count);
   }
 
-  InverseColumns::Solve solve() const {
-    return [this](const Field& forces) -> Result<Field> { return Field(inverse * forces); };
+  SolvedMatrix plate() const {
+    return {
+        inverse.rows(),
+        [this](const Field& forces) -> Result<Field> { return Field(inverse * forces); },
+        [this]() -> Result<SparseMatrix> { return SparseMatrix(inverse.inverse().sparseView()); }};
   }
 };
 
@@ -43,13 +46,14 @@ std::vector<ContactRow> random_rows(int unknowns) {
 }  // namespace
 
 TEST_CASE("forces of contact push, and only where a row just holds", "[plate][contact]") {
+  // The last one has more rows than are solved by a factor.
   for (int trial = 0; trial < 60; ++trial) {
-    const int count = 1 + trial;
+    const int count = trial < 59 ? 1 + trial : 900;
     const Springs springs(count);
     const std::vector<ContactRow> rows = random_rows(count);
     InverseColumns columns({});
     Complementarity problem(columns, {});
-    const auto forces = problem.solve(rows, {}, count, 1e-12, springs.solve());
+    const auto forces = problem.solve(rows, {}, 1e-12, springs.plate());
     CAPTURE(count);
     REQUIRE(forces);
     Field all = Field::Zero(count, 3);
@@ -72,10 +76,10 @@ TEST_CASE("forces of contact do not depend on which columns are kept", "[plate][
   InverseColumns columns({}), kept({});
   std::vector<int> all(40);
   for (int k = 0; k < 40; ++k) all[static_cast<std::size_t>(k)] = k;
-  REQUIRE(kept.take(all, 40, springs.solve()));
+  REQUIRE(kept.take(all, 40, springs.plate().solve));
   Complementarity first({columns, {}}), second({kept, {}});
-  const auto one = first.solve(rows, {}, 40, 1e-12, springs.solve());
-  const auto other = second.solve(rows, {}, 40, 1e-12, springs.solve());
+  const auto one = first.solve(rows, {}, 1e-12, springs.plate());
+  const auto other = second.solve(rows, {}, 1e-12, springs.plate());
   REQUIRE(one);
   REQUIRE(other);
   CHECK(*one == *other);
@@ -91,7 +95,7 @@ TEST_CASE("forces of contact have the same bits for every width of vectors", "[p
     context.most_lanes = lanes;
     InverseColumns columns(context);
     Complementarity problem(columns, context);
-    const auto forces = problem.solve(rows, {}, 50, 1e-12, springs.solve());
+    const auto forces = problem.solve(rows, {}, 1e-12, springs.plate());
     REQUIRE(forces);
     found.push_back(*forces);
   }
@@ -117,7 +121,7 @@ TEST_CASE("friction resists the slip up to its bound, and what sticks does not m
     }
     InverseColumns columns({});
     Complementarity problem(columns, {});
-    const auto forces = problem.solve(rows, bounds, count, 1e-12, springs.solve());
+    const auto forces = problem.solve(rows, bounds, 1e-12, springs.plate());
     CAPTURE(count);
     REQUIRE(forces);
     Field all(count, 3);

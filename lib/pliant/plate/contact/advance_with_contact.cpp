@@ -6,6 +6,8 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/contact/contact_steps.hpp"
+#include "pliant/plate/energy/grid_assembly.hpp"
+#include "pliant/plate/sparse/plate_matrix.hpp"
 
 namespace pliant {
 namespace {
@@ -50,9 +52,20 @@ Result<ContactPlate> contact_plate(PlateSolver& solver, const PlateProblem& prob
                                    const Field& displacement) {
   const StageTimer set_up(solver.context().profile, Stage::SetUp);
   if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
-  return ContactPlate{[&solver](const Field& forces) { return solver.solve(forces); },
-                      [&solver](const Field& forces) { return solver.solve_roughly(forces); },
-                      solver.terms(problem, dt, displacement), dt};
+  StepTerms terms = solver.terms(problem, dt, displacement);
+  const auto upper = [system = problem.system(dt), shift = terms.shift,
+                      context = solver.context()]() -> Result<SparseMatrix> {
+    const GridAssembly assembly(system);
+    PlateMatrix matrix(context);
+    if (auto assembled = matrix.assemble(assembly); !assembled) return fail(assembled.error());
+    return matrix.shifted(shift);
+  };
+  return ContactPlate{
+      [&solver](const Field& forces) { return solver.solve(forces); },
+      {terms.known.rows(), [&solver](const Field& forces) { return solver.solve_roughly(forces); },
+       upper},
+      std::move(terms),
+      dt};
 }
 
 // The steps from `first` on, in which something touches.

@@ -37,6 +37,7 @@ void Complementarity::begin(const std::vector<ContactRow>& rows,
       rows, [](const ContactRow& row) { return row.lies && !row.sticks && row.lift > 0; });
   pushes_.assign(rows.size(), false);
   friction_.assign(rows.size(), {});
+  is_smooth_ = false;
   forces_.assign(rows.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     pushes_[k] = rows[k].sticks || (rows[k].lift > 0 && (rows[k].lies || !some_lie));
@@ -58,7 +59,11 @@ void Complementarity::list_parts(const std::vector<ContactRow>& rows) {
     const ContactRow& row = rows[k];
     const Friction& friction = friction_[k];
     if (pushes_[k]) add(k, true, row.normal, 0);
-    if (friction.slips) {
+    if (is_smooth_ && friction.bound > 0) {
+      const auto [one, other] = across(row.normal);
+      for (const Vector3d& along : {one, other})
+        add(k, false, along, friction.length / friction.bound);
+    } else if (friction.slips) {
       // Newton's method on bound |slip|: as the slip turns, so does its force.
       add(k, false, turned_across(row.normal, friction.along), friction.length / friction.bound);
     } else if (row.sticks || friction.bound > 0) {
@@ -75,40 +80,46 @@ double Complementarity::lift_of(const std::vector<ContactRow>& rows, std::size_t
   return parts_[part].is_normal ? row.lift : -dot_of(along_[part].direction, row.slip);
 }
 
-// Solves with what pushes and slips now.
-Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, Eigen::Index size,
-                                   const InverseColumns::Solve& solve_plate) {
-  list_parts(rows);
-  std::vector<ContactForce> all = along_;
-  if (auto factored = matrix_.factor(all, size, solve_plate); !factored) return factored;
-  std::vector<double> right;
-  for (std::size_t i = 0; i < parts_.size(); ++i) {
-    double lift = lift_of(rows, i);
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      const Friction& friction = friction_[k];
-      if (!friction.slips) continue;
-      lift += friction.bound * dot_of(along_[i].direction, friction.along) *
-              matrix_.entry(rows[k].unknown, along_[i].unknown);
-    }
-    right.push_back(lift);
+// On which the forces move the unknowns of all rows.
+Result<std::vector<Vector3d>> Complementarity::ways(const std::vector<ContactRow>& rows,
+                                                    const SolvedMatrix& plate) const {
+  std::vector<PlacedVector> forces;
+  std::vector<int> unknowns;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    unknowns.push_back(rows[k].unknown);
+    if (!forces_[k].isZero(0)) forces.push_back({rows[k].unknown, forces_[k]});
   }
-  sizes_ = matrix_.solved(std::move(right));
-  forces_.assign(rows.size(), Vector3d::Zero());
-  for (std::size_t k = 0; k < rows.size(); ++k)
-    if (friction_[k].slips) forces_[k] = -friction_[k].bound * friction_[k].along;
-  for (std::size_t i = 0; i < parts_.size(); ++i)
-    forces_[parts_[i].row] += sizes_[i] * along_[i].direction;
-  return {};
+  return matrix_.ways(forces, unknowns, plate);
 }
 
-// What the forces move the unknown of a row, by the columns.
-Vector3d Complementarity::way_of(const std::vector<ContactRow>& rows, std::size_t row) const {
-  Vector3d way(0, 0, 0);
+// Solves with what pushes and slips now.
+Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, const SolvedMatrix& plate) {
+  list_parts(rows);
+  if (auto factored = matrix_.factor(along_, plate); !factored) return factored;
+  forces_.assign(rows.size(), Vector3d::Zero());
+  bool slips = false;
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    if (forces_[k].isZero(0)) continue;
-    way += matrix_.entry(rows[k].unknown, rows[row].unknown) * forces_[k];
+    if (!friction_[k].slips) continue;
+    forces_[k] = -friction_[k].bound * friction_[k].along;
+    slips = true;
   }
-  return way;
+  std::vector<double> right;
+  for (std::size_t i = 0; i < parts_.size(); ++i) right.push_back(lift_of(rows, i));
+  if (slips) {
+    const auto moved = ways(rows, plate);
+    if (!moved) return fail(moved.error());
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      right[i] -= dot_of(along_[i].direction, (*moved)[parts_[i].row]);
+  }
+  auto sizes = matrix_.solved(right, plate);
+  if (!sizes) return fail(sizes.error());
+  sizes_ = *std::move(sizes);
+  for (std::size_t i = 0; i < parts_.size(); ++i)
+    forces_[parts_[i].row] += sizes_[i] * along_[i].direction;
+  auto moved = ways(rows, plate);
+  if (!moved) return fail(moved.error());
+  ways_ = *std::move(moved);
+  return {};
 }
 
 // Those that push the wrong way, and those that do not push and are not kept.
@@ -124,7 +135,7 @@ std::vector<std::size_t> Complementarity::wrong_rows(const std::vector<ContactRo
     if (rows[k].sticks) continue;
     if (pushes_[k]) {
       if (sizes_[part] < -1e-13 * most) wrong.push_back(k);
-    } else if (rows[k].lift - dot_of(rows[k].normal, way_of(rows, k)) > tolerance) {
+    } else if (rows[k].lift - dot_of(rows[k].normal, ways_[k]) > tolerance) {
       wrong.push_back(k);
     }
   }
@@ -134,29 +145,31 @@ std::vector<std::size_t> Complementarity::wrong_rows(const std::vector<ContactRo
 // Lets rows slip and hold as their forces and slips say; whether any changed.
 bool Complementarity::update_friction(const std::vector<ContactRow>& rows, double tolerance) {
   bool changed = false;
+  double fine = tolerance;  // what rounding may leave of a slip
+  for (const Vector3d& way : ways_) fine = std::max(fine, 1e-10 * length_of(way));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     Friction& friction = friction_[k];
     if (!(friction.bound > 0)) continue;
     if (!friction.slips) {
       const Vector3d force = part_across(rows[k].normal, forces_[k]);
       const double size = length_of(force);
-      if (!(size > friction.bound * (1 + 1e-12))) continue;
+      if (!(size > friction.bound * (1 + 1e-10))) continue;
       friction = {friction.bound, true, -force / size, 0};
       changed = true;
       continue;
     }
-    const Vector3d slip = part_across(rows[k].normal, rows[k].slip + way_of(rows, k));
+    const Vector3d slip = part_across(rows[k].normal, rows[k].slip + ways_[k]);
     const double length = length_of(slip);
     if (!(dot_of(slip, friction.along) > 0)) {
       // Against its force, or not at all: it holds, or just begins to slip.
-      if (length <= tolerance && friction.length == 0) continue;
+      if (length <= fine && friction.length == 0) continue;
       friction = {friction.bound};
       changed = true;
       continue;
     }
     const Vector3d along = slip / length;
-    const bool is_same = length_of(along - friction.along) * friction.length <= tolerance &&
-                         std::abs(length - friction.length) <= tolerance + 1e-9 * length;
+    const bool is_same = length_of(along - friction.along) * friction.length <= fine &&
+                         std::abs(length - friction.length) <= fine + 1e-9 * length;
     friction.along = along;
     friction.length = length;
     changed = changed || !is_same;
@@ -164,23 +177,48 @@ bool Complementarity::update_friction(const std::vector<ContactRow>& rows, doubl
   return changed;
 }
 
+// Friction as springs that are as strong as the slip of the turn before makes them: what is least
+// then falls with each turn, if slowly, where Newton's method may go round. From there it goes on.
+void Complementarity::smooth(const std::vector<ContactRow>& rows, bool goes_on) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    Friction& friction = friction_[k];
+    if (!(friction.bound > 0)) continue;
+    const Vector3d slip = part_across(rows[k].normal, rows[k].slip + ways_[k]);
+    const double force = length_of(part_across(rows[k].normal, forces_[k]));
+    friction.length = length_of(slip);
+    friction.slips = !goes_on && friction.length > 0 && force > 0.999 * friction.bound;
+    if (friction.slips) friction.along = slip / friction.length;
+    if (!goes_on && !friction.slips) friction.length = 0;
+  }
+  is_smooth_ = goes_on;
+}
+
 Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRow>& rows,
                                                      const std::vector<double>& bounds,
-                                                     Eigen::Index size, double tolerance,
-                                                     const InverseColumns::Solve& solve_plate) {
-  constexpr int patience = 10;  // of pivots in blocks that leave no fewer wrong rows
+                                                     double tolerance, const SolvedMatrix& plate) {
+  constexpr int patience = 10;         // of pivots in blocks that leave no fewer wrong rows
+  constexpr int turns_of_newton = 40;  // that may be needed; then as many smooth ones
   begin(rows, bounds);
+  int updates = 0;
   std::size_t fewest = std::numeric_limits<std::size_t>::max();
   int waited = 0;
   // Single pivots end by themselves; the bound is far beyond what they need.
   const std::size_t most_turns = 1000 + 20 * rows.size();
   for (std::size_t turns = 0; turns < most_turns; ++turns) {
     if (context_.is_stopped()) return interrupted();
-    if (auto turned = turn(rows, size, solve_plate); !turned) return fail(turned.error());
+    if (auto turned = turn(rows, plate); !turned) return fail(turned.error());
     const std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
     if (wrong.empty()) {
-      if (!bounds.empty() && update_friction(rows, tolerance)) continue;
-      return forces_;
+      if (bounds.empty()) return forces_;
+      fewest = std::numeric_limits<std::size_t>::max();
+      waited = 0;
+      const bool will_be_smooth = ++updates / turns_of_newton % 2 == 1;
+      if (is_smooth_ || will_be_smooth) {
+        smooth(rows, will_be_smooth);
+      } else if (!update_friction(rows, tolerance)) {
+        return forces_;
+      }
+      continue;
     }
     waited = wrong.size() < fewest ? 0 : waited + 1;
     fewest = std::min(fewest, wrong.size());
@@ -192,9 +230,10 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
       fmt::format("the contact of {} nodes did not settle in {} turns", rows.size(), most_turns));
 }
 
-std::vector<Vector3d> Complementarity::answer_to(const std::vector<ContactRow>& rows,
-                                                 const std::vector<Vector3d>& moved,
-                                                 double tolerance) {
+Result<std::vector<Vector3d>> Complementarity::answer_to(const std::vector<ContactRow>& rows,
+                                                         const std::vector<Vector3d>& moved,
+                                                         double tolerance,
+                                                         const SolvedMatrix& plate) {
   std::vector<double> lack;
   double most = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
@@ -202,11 +241,12 @@ std::vector<Vector3d> Complementarity::answer_to(const std::vector<ContactRow>& 
                    along_[i].give * sizes_[i]);
     most = std::max(most, std::abs(lack.back()));
   }
-  if (!(most > tolerance)) return {};
-  const std::vector<double> more = matrix_.solved(std::move(lack));
+  if (!(most > tolerance)) return std::vector<Vector3d>();
+  const auto more = matrix_.solved(lack, plate);
+  if (!more) return fail(more.error());
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    sizes_[i] += more[i];
-    forces_[parts_[i].row] += more[i] * along_[i].direction;
+    sizes_[i] += (*more)[i];
+    forces_[parts_[i].row] += (*more)[i] * along_[i].direction;
   }
   return forces_;
 }

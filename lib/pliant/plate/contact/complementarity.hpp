@@ -27,16 +27,17 @@ class Complementarity {
   void forget() { matrix_.forget(); }
 
   /// The force of each row, world. `bounds`: of the friction of each row, >= 0; empty: there is
-  /// none. `size`: #unknowns. Errors: those of the columns; SolverFailed if it does not settle;
+  /// none. Errors: those of the plate's solves; SolverFailed if it does not settle;
   /// Interrupted.
   Result<std::vector<Vector3d>> solve(const std::vector<ContactRow>& rows,
-                                      const std::vector<double>& bounds, Eigen::Index size,
-                                      double tolerance, const InverseColumns::Solve& solve_plate);
+                                      const std::vector<double>& bounds, double tolerance,
+                                      const SolvedMatrix& plate);
 
   /// More of the forces that the last `solve` found, where columns were rough: `moved` is what its
-  /// forces move each row's unknown, world. Null: none lacks more than the tolerance.
-  std::vector<Vector3d> answer_to(const std::vector<ContactRow>& rows,
-                                  const std::vector<Vector3d>& moved, double tolerance);
+  /// forces move each row's unknown, world. Empty: none lacks more than the tolerance.
+  Result<std::vector<Vector3d>> answer_to(const std::vector<ContactRow>& rows,
+                                          const std::vector<Vector3d>& moved, double tolerance,
+                                          const SolvedMatrix& plate);
 
  private:
   // What friction does at a row.
@@ -55,20 +56,23 @@ class Complementarity {
   void begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
   void list_parts(const std::vector<ContactRow>& rows);
   double lift_of(const std::vector<ContactRow>& rows, std::size_t part) const;
-  Result<void> turn(const std::vector<ContactRow>& rows, Eigen::Index size,
-                    const InverseColumns::Solve& solve_plate);
-  Vector3d way_of(const std::vector<ContactRow>& rows, std::size_t row) const;
+  Result<void> turn(const std::vector<ContactRow>& rows, const SolvedMatrix& plate);
+  Result<std::vector<Vector3d>> ways(const std::vector<ContactRow>& rows,
+                                     const SolvedMatrix& plate) const;
   std::vector<std::size_t> wrong_rows(const std::vector<ContactRow>& rows, double tolerance) const;
   bool update_friction(const std::vector<ContactRow>& rows, double tolerance);
+  void smooth(const std::vector<ContactRow>& rows, bool goes_on);
 
   ContactMatrix matrix_;
   RunContext context_;
   std::vector<bool> pushes_;        // of each row
+  bool is_smooth_ = false;          // friction is that of springs
   std::vector<Friction> friction_;  // of each row
   std::vector<Part> parts_;
   std::vector<ContactForce> along_;  // of the parts
   std::vector<double> sizes_;        // of the parts
   std::vector<Vector3d> forces_;     // of the rows, world
+  std::vector<Vector3d> ways_;       // on which these move the rows' unknowns
 };
 
 }  // namespace pliant

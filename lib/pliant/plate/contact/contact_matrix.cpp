@@ -6,6 +6,65 @@
 #include <fmt/format.h>
 
 namespace pliant {
+namespace {
+
+// From so many forces on, gradients are faster than a factor.
+constexpr std::size_t most_dense = 400;
+
+// Entries that lead to what is near: of a grid, 16 nodes.
+constexpr int reach_of_nearby = 8;
+
+double dot_product(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+double largest(const std::vector<double>& numbers) {
+  double most = 0;
+  for (const double number : numbers) most = std::max(most, std::abs(number));
+  return most;
+}
+
+}  // namespace
+
+void ContactMatrix::forget() {
+  factored_.clear();
+  matrix_.reset();
+  schur_.reset();
+}
+
+Result<void> ContactMatrix::factor(std::span<const ContactForce> forces,
+                                   const SolvedMatrix& plate) {
+  forces_.assign(forces.begin(), forces.end());
+  unknowns_.clear();
+  for (const ContactForce& force : forces)
+    if (unknowns_.empty() || unknowns_.back() != force.unknown) unknowns_.push_back(force.unknown);
+  is_dense_ = forces.size() <= most_dense;
+  return is_dense_ ? factor_densely(forces, plate) : surround(plate);
+}
+
+Result<std::vector<Vector3d>> ContactMatrix::ways(std::span<const PlacedVector> forces,
+                                                  std::span<const int> unknowns,
+                                                  const SolvedMatrix& plate) const {
+  std::vector<Vector3d> all;
+  if (is_dense_) {
+    std::vector<const double*> columns;
+    for (const PlacedVector& force : forces) columns.push_back(columns_.of(force.unknown));
+    for (const int unknown : unknowns) {
+      Vector3d way(0, 0, 0);
+      for (std::size_t k = 0; k < forces.size(); ++k) way += columns[k][unknown] * forces[k].vector;
+      all.push_back(way);
+    }
+    return all;
+  }
+  Field pressed = Field::Zero(plate.size, 3);
+  for (const PlacedVector& force : forces) pressed.row(force.unknown) += force.vector.transpose();
+  const auto moved = plate.solve(pressed);
+  if (!moved) return fail(moved.error());
+  for (const int unknown : unknowns) all.emplace_back(moved->row(unknown).transpose());
+  return all;
+}
 
 // How many of the first forces are the first ones of the factor.
 std::size_t ContactMatrix::count_kept(std::span<const ContactForce> forces) const {
@@ -27,13 +86,10 @@ void ContactMatrix::make_room(std::size_t count, std::size_t kept) {
 
 // Cholesky's factor by rows: sums are dot products of rows, of one order for all widths. A row
 // depends on those before it only, so that the first ones of an earlier factor are kept.
-Result<void> ContactMatrix::factor(std::span<const ContactForce> forces, Eigen::Index size,
-                                   const InverseColumns::Solve& solve_plate) {
+Result<void> ContactMatrix::factor_densely(std::span<const ContactForce> forces,
+                                           const SolvedMatrix& plate) {
   const std::size_t count = forces.size(), kept = count_kept(forces);
-  std::vector<int> unknowns;
-  for (const ContactForce& force : forces)
-    if (unknowns.empty() || unknowns.back() != force.unknown) unknowns.push_back(force.unknown);
-  if (auto taken = columns_.take(unknowns, size, solve_plate); !taken) return taken;
+  if (auto taken = columns_.take(unknowns_, plate.size, plate.solve); !taken) return taken;
   factored_.resize(kept);
   make_room(count, kept);
   std::vector<const double*> columns;
@@ -65,7 +121,7 @@ Result<void> ContactMatrix::factor(std::span<const ContactForce> forces, Eigen::
   return {};
 }
 
-std::vector<double> ContactMatrix::solved(std::vector<double> x) const {
+std::vector<double> ContactMatrix::solved_densely(std::vector<double> x) const {
   const std::size_t count = x.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double* const row = factor_.data() + i * pitch_;
@@ -77,6 +133,90 @@ std::vector<double> ContactMatrix::solved(std::vector<double> x) const {
     const double* const row = factor_.data() + i * pitch_;
     x[i] /= row[i];
     for (std::size_t j = 0; j < i; ++j) x[j] -= row[j] * x[i];
+  }
+  return x;
+}
+
+// Makes the preconditioner.
+Result<void> ContactMatrix::surround(const SolvedMatrix& plate) {
+  if (!matrix_) {
+    const auto upper = plate.upper();
+    if (!upper) return fail(upper.error());
+    matrix_ = SparseMatrix(upper->selfadjointView<Eigen::Upper>());
+  }
+  if (schur_ && schur_unknowns_ == unknowns_) return {};
+  schur_.reset();
+  auto made = NearbySchur::make(*matrix_, unknowns_, reach_of_nearby, context_);
+  if (!made) return fail(made.error());
+  schur_ = *std::move(made);
+  schur_unknowns_ = unknowns_;
+  return {};
+}
+
+Result<std::vector<double>> ContactMatrix::times(const std::vector<double>& x,
+                                                 const SolvedMatrix& plate) const {
+  Field pressed = Field::Zero(plate.size, 3);
+  for (std::size_t k = 0; k < x.size(); ++k)
+    pressed.row(forces_[k].unknown) += x[k] * forces_[k].direction.transpose();
+  const auto moved = plate.solve(pressed);
+  if (!moved) return fail(moved.error());
+  std::vector<double> product(x.size());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    product[k] = dot_of(forces_[k].direction, moved->row(forces_[k].unknown).transpose()) +
+                 forces_[k].give * x[k];
+  }
+  return product;
+}
+
+Result<std::vector<double>> ContactMatrix::preconditioned(const std::vector<double>& x) const {
+  Field pressed = Field::Zero(static_cast<Eigen::Index>(unknowns_.size()), 3);
+  const auto for_each = [&](const auto& visit) {
+    Eigen::Index place = -1;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      if (k == 0 || forces_[k].unknown != forces_[k - 1].unknown) ++place;
+      visit(k, place);
+    }
+  };
+  for_each([&](std::size_t k, Eigen::Index place) {
+    pressed.row(place) += x[k] * forces_[k].direction.transpose();
+  });
+  const auto product = schur_->times(pressed);
+  if (!product) return fail(product.error());
+  std::vector<double> result(x.size());
+  for_each([&](std::size_t k, Eigen::Index place) {
+    result[k] = dot_of(forces_[k].direction, product->row(place).transpose());
+  });
+  return result;
+}
+
+// Conjugate gradients from 0 on.
+Result<std::vector<double>> ContactMatrix::solved(const std::vector<double>& right,
+                                                  const SolvedMatrix& plate) {
+  if (is_dense_) return solved_densely(right);
+  constexpr int most_turns = 500;
+  constexpr double small = 1e-13;
+  std::vector<double> x(right.size(), 0.0), left = right, way;
+  const double whole = largest(right);
+  double before = 0;
+  for (int turn = 0; turn < most_turns && largest(left) > small * whole; ++turn) {
+    if (context_.is_stopped()) return interrupted();
+    const auto next = preconditioned(left);
+    if (!next) return next;
+    const double now = dot_product(left, *next);
+    if (turn == 0) {
+      way = *next;
+    } else {
+      for (std::size_t k = 0; k < way.size(); ++k) way[k] = (*next)[k] + now / before * way[k];
+    }
+    before = now;
+    const auto product = times(way, plate);
+    if (!product) return product;
+    const double part = now / dot_product(way, *product);
+    if (!std::isfinite(part)) break;
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      x[k] += part * way[k];
+      left[k] -= part * (*product)[k];
+    }
   }
   return x;
 }

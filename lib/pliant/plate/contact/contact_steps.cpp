@@ -29,8 +29,7 @@ Result<Field> pushed(const ContactPlate& plate, Complementarity& problem,
                      std::vector<Vector3d>& forces) {
   constexpr int most_corrections = 4;
   const std::vector<ContactRow>& rows = contact.rows();
-  auto found =
-      problem.solve(rows, bounds, plate.terms.known.rows(), contact.tolerance(), plate.roughly);
+  auto found = problem.solve(rows, bounds, contact.tolerance(), plate.matrix);
   if (!found) return fail(found.error());
   forces = *std::move(found);
   const Transform to_world_space{contact.to_world(), Vector3d::Zero()};
@@ -39,9 +38,10 @@ Result<Field> pushed(const ContactPlate& plate, Complementarity& problem,
     std::vector<Vector3d> ways;
     for (const ContactRow& row : rows)
       ways.push_back(to_world(to_world_space, Vector3d(moved->row(row.unknown).transpose())));
-    std::vector<Vector3d> better = problem.answer_to(rows, ways, contact.tolerance());
-    if (better.empty()) break;
-    forces = std::move(better);
+    auto better = problem.answer_to(rows, ways, contact.tolerance(), plate.matrix);
+    if (!better) return fail(better.error());
+    if (better->empty()) break;
+    forces = *std::move(better);
     moved = moved_by(plate, contact, forces);
   }
   return moved;

@@ -13,10 +13,10 @@ namespace pliant {
 /// is the matrix of a step. Forces and solutions are on the unknowns (#unknowns x 3), of which the
 /// first ones move. Internal to plate.
 struct ContactPlate {
-  InverseColumns::Solve solve;    ///< A^-1 forces
-  InverseColumns::Solve roughly;  ///< the same, for columns of `InverseColumns`
-  StepTerms terms;                ///< of its steps
-  double dt = 1;                  ///< of a step [s]
+  InverseColumns::Solve solve;  ///< A^-1 forces
+  SolvedMatrix matrix;          ///< A, whose solves may be rough
+  StepTerms terms;              ///< of its steps
+  double dt = 1;                ///< of a step [s]
 };
 
 /// The displacement in which a step of backward Euler ends without contact.

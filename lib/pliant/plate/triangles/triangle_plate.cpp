@@ -270,9 +270,17 @@ Result<void> TrianglePlate::advance_with_contact(const TriangleProblem& problem,
   contact_->shift = shift;
   contact_->drag = drag;
   const auto plate_of = [&](SparsePlate& plate, double length) {
+    StepTerms terms = plate.terms(forces, dynamics, length);
+    const auto upper = [&plate, shift = terms.shift]() -> Result<SparseMatrix> {
+      SparseMatrix matrix = plate.stiffness();
+      for (Eigen::Index k = 0; k < shift.size(); ++k) matrix.coeffRef(k, k) += shift[k];
+      return matrix;
+    };
+    const Eigen::Index size = forces.rows();
     return ContactPlate{[&plate](const Field& f) { return plate.solve(f); },
-                        [&plate](const Field& f) { return plate.solve_roughly(f); },
-                        plate.terms(forces, dynamics, length), length};
+                        {size, [&plate](const Field& f) { return plate.solve_roughly(f); }, upper},
+                        std::move(terms),
+                        length};
   };
   const ContactPlate own = plate_of(whole, dt), half = plate_of(plate_, steps.solved_length());
   for (int step = *gone; step < steps.count; ++step) {
