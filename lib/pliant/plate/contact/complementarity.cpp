@@ -21,6 +21,9 @@ std::pair<Vector3d, Vector3d> across(const Vector3d& n) {
                         n[0] * one[1] - n[1] * one[0])};
 }
 
+// What solves of many forces leave, as a part, until the sets are right, and then.
+constexpr double rough = 1e-8, exact = 1e-13;
+
 Vector3d part_across(const Vector3d& n, const Vector3d& way) { return way - dot_of(n, way) * n; }
 
 Vector3d turned_across(const Vector3d& n, const Vector3d& along) {
@@ -38,6 +41,7 @@ void Complementarity::begin(const std::vector<ContactRow>& rows,
   pushes_.assign(rows.size(), false);
   friction_.assign(rows.size(), {});
   is_smooth_ = false;
+  is_rough_ = true;
   forces_.assign(rows.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     pushes_[k] = rows[k].sticks || (rows[k].lift > 0 && (rows[k].lies || !some_lie));
@@ -111,7 +115,7 @@ Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, const So
     for (std::size_t i = 0; i < parts_.size(); ++i)
       right[i] -= dot_of(along_[i].direction, (*moved)[parts_[i].row]);
   }
-  auto sizes = matrix_.solved(right, plate);
+  auto sizes = matrix_.solved(right, plate, is_rough() ? rough : exact);
   if (!sizes) return fail(sizes.error());
   sizes_ = *std::move(sizes);
   for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -128,14 +132,17 @@ std::vector<std::size_t> Complementarity::wrong_rows(const std::vector<ContactRo
   double most = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i)
     if (parts_[i].is_normal) most = std::max(most, std::abs(sizes_[i]));
+  double fine = tolerance;
+  for (const Vector3d& way : ways_)
+    if (is_rough()) fine = std::max(fine, 1e-6 * length_of(way));
   std::vector<std::size_t> wrong;
   std::size_t part = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     while (part < parts_.size() && parts_[part].row < k) ++part;
     if (rows[k].sticks) continue;
     if (pushes_[k]) {
-      if (sizes_[part] < -1e-13 * most) wrong.push_back(k);
-    } else if (rows[k].lift - dot_of(rows[k].normal, ways_[k]) > tolerance) {
+      if (sizes_[part] < -(is_rough() ? 1e-6 : 1e-13) * most) wrong.push_back(k);
+    } else if (rows[k].lift - dot_of(rows[k].normal, ways_[k]) > fine) {
       wrong.push_back(k);
     }
   }
@@ -146,14 +153,15 @@ std::vector<std::size_t> Complementarity::wrong_rows(const std::vector<ContactRo
 bool Complementarity::update_friction(const std::vector<ContactRow>& rows, double tolerance) {
   bool changed = false;
   double fine = tolerance;  // what rounding may leave of a slip
-  for (const Vector3d& way : ways_) fine = std::max(fine, 1e-10 * length_of(way));
+  for (const Vector3d& way : ways_)
+    fine = std::max(fine, (is_rough() ? 1e-6 : 1e-10) * length_of(way));
   for (std::size_t k = 0; k < rows.size(); ++k) {
     Friction& friction = friction_[k];
     if (!(friction.bound > 0)) continue;
     if (!friction.slips) {
       const Vector3d force = part_across(rows[k].normal, forces_[k]);
       const double size = length_of(force);
-      if (!(size > friction.bound * (1 + 1e-10))) continue;
+      if (!(size > friction.bound * (1 + (is_rough() ? 1e-6 : 1e-10)))) continue;
       friction = {friction.bound, true, -force / size, 0};
       changed = true;
       continue;
@@ -209,14 +217,20 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
     if (auto turned = turn(rows, plate); !turned) return fail(turned.error());
     const std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
     if (wrong.empty()) {
-      if (bounds.empty()) return forces_;
+      // All of it once more, as exactly as it can be; dense factors always are.
+      if (bounds.empty()) {
+        if (!is_rough()) return forces_;
+        is_rough_ = false;
+        continue;
+      }
       fewest = std::numeric_limits<std::size_t>::max();
       waited = 0;
       const bool will_be_smooth = ++updates / turns_of_newton % 2 == 1;
       if (is_smooth_ || will_be_smooth) {
         smooth(rows, will_be_smooth);
       } else if (!update_friction(rows, tolerance)) {
-        return forces_;
+        if (!is_rough()) return forces_;
+        is_rough_ = false;
       }
       continue;
     }

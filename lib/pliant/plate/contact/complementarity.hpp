@@ -53,6 +53,7 @@ class Complementarity {
     bool is_normal;
   };
 
+  bool is_rough() const { return is_rough_ && !matrix_.is_dense(); }
   void begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
   void list_parts(const std::vector<ContactRow>& rows);
   double lift_of(const std::vector<ContactRow>& rows, std::size_t part) const;
@@ -67,6 +68,7 @@ class Complementarity {
   RunContext context_;
   std::vector<bool> pushes_;        // of each row
   bool is_smooth_ = false;          // friction is that of springs
+  bool is_rough_ = true;            // solves are: the sets are not right yet
   std::vector<Friction> friction_;  // of each row
   std::vector<Part> parts_;
   std::vector<ContactForce> along_;  // of the parts

@@ -8,8 +8,9 @@
 namespace pliant {
 namespace {
 
-// From so many forces on, gradients are faster than a factor.
-constexpr std::size_t most_dense = 400;
+// From so many forces on, gradients are faster than a factor; where some unknowns have several
+// forces, as with friction, the preconditioner is worse.
+constexpr std::size_t most_dense = 400, most_dense_of_several = 1200;
 
 // Entries that lead to what is near: of a grid, 16 nodes.
 constexpr int reach_of_nearby = 8;
@@ -40,7 +41,8 @@ Result<void> ContactMatrix::factor(std::span<const ContactForce> forces,
   unknowns_.clear();
   for (const ContactForce& force : forces)
     if (unknowns_.empty() || unknowns_.back() != force.unknown) unknowns_.push_back(force.unknown);
-  is_dense_ = forces.size() <= most_dense;
+  const bool are_several = forces.size() > unknowns_.size();
+  is_dense_ = forces.size() <= (are_several ? most_dense_of_several : most_dense);
   return is_dense_ ? factor_densely(forces, plate) : surround(plate);
 }
 
@@ -168,6 +170,11 @@ Result<std::vector<double>> ContactMatrix::times(const std::vector<double>& x,
   return product;
 }
 
+// What gives by itself needs the less of the plate: 1 for a force that does not.
+double ContactMatrix::share(const ContactForce& force) const {
+  return 1 / std::sqrt(1 + force.give * matrix_->coeff(force.unknown, force.unknown));
+}
+
 Result<std::vector<double>> ContactMatrix::preconditioned(const std::vector<double>& x) const {
   Field pressed = Field::Zero(static_cast<Eigen::Index>(unknowns_.size()), 3);
   const auto for_each = [&](const auto& visit) {
@@ -178,27 +185,26 @@ Result<std::vector<double>> ContactMatrix::preconditioned(const std::vector<doub
     }
   };
   for_each([&](std::size_t k, Eigen::Index place) {
-    pressed.row(place) += x[k] * forces_[k].direction.transpose();
+    pressed.row(place) += share(forces_[k]) * x[k] * forces_[k].direction.transpose();
   });
   const auto product = schur_->times(pressed);
   if (!product) return fail(product.error());
   std::vector<double> result(x.size());
   for_each([&](std::size_t k, Eigen::Index place) {
-    result[k] = dot_of(forces_[k].direction, product->row(place).transpose());
+    result[k] = share(forces_[k]) * dot_of(forces_[k].direction, product->row(place).transpose());
   });
   return result;
 }
 
 // Conjugate gradients from 0 on.
 Result<std::vector<double>> ContactMatrix::solved(const std::vector<double>& right,
-                                                  const SolvedMatrix& plate) {
+                                                  const SolvedMatrix& plate, double least) {
   if (is_dense_) return solved_densely(right);
   constexpr int most_turns = 500;
-  constexpr double small = 1e-13;
   std::vector<double> x(right.size(), 0.0), left = right, way;
   const double whole = largest(right);
   double before = 0;
-  for (int turn = 0; turn < most_turns && largest(left) > small * whole; ++turn) {
+  for (int turn = 0; turn < most_turns && largest(left) > least * whole; ++turn) {
     if (context_.is_stopped()) return interrupted();
     const auto next = preconditioned(left);
     if (!next) return next;

@@ -48,6 +48,9 @@ class ContactMatrix {
   ContactMatrix(InverseColumns& columns, const RunContext& context)
       : columns_(columns), context_(context), kernels_(kernels_of_width(context.most_lanes)) {}
 
+  /// Whether the last forces have a factor.
+  bool is_dense() const { return is_dense_; }
+
   /// The plate's matrix is another one.
   void forget();
 
@@ -57,7 +60,8 @@ class ContactMatrix {
 
   /// The sizes of the forces that move their unknowns so far along them. Requires: `factor`
   /// succeeded last, for the same plate.
-  Result<std::vector<double>> solved(const std::vector<double>& right, const SolvedMatrix& plate);
+  Result<std::vector<double>> solved(const std::vector<double>& right, const SolvedMatrix& plate,
+                                     double least = 1e-13);
 
   /// The ways on which forces move some unknowns. Requires: those with a force are among the ones
   /// of `factor`.
@@ -73,6 +77,7 @@ class ContactMatrix {
   Result<void> surround(const SolvedMatrix& plate);
   Result<std::vector<double>> times(const std::vector<double>& x, const SolvedMatrix& plate) const;
   Result<std::vector<double>> preconditioned(const std::vector<double>& x) const;
+  double share(const ContactForce& force) const;
 
   InverseColumns& columns_;
   RunContext context_;
