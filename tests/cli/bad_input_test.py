@@ -48,6 +48,31 @@ BAD_SCENES = {
     "a goal without a shape at rest": (
         GRID, GRID + '<material goal="2"/><solver reference="none"/>', 3,
         'sheet.goal is 2, but must be 0 with reference="none"'),
+    "a collider without a shape": (
+        "<point", '<collider name="b"/><point', 4, '<collider> "b" has no shape: one <sphere>, <capsule>, <box> or'),
+    "a collider of two shapes": (
+        "<point", '<collider name="b"><sphere/><plane/></collider><point', 4, '<collider> "b" has two shapes'),
+    "a ball that is an ellipsoid": (
+        "<point", '<collider name="b"><sphere/><transform scale="1 2 1"/></collider><point', 4,
+        "b.scale is 1 2 1, but must be equal along x, y and z: use equal scales, or a box"),
+    "a box that is rounder than thick": (
+        "<point", '<collider name="b"><box size="1 0.5 1" round="0.3"/></collider><point', 4,
+        "b.round is 0.3, but must be at most 0.25"),
+    "a collider that is no ball behind the last frame": (
+        "<point", '<collider name="b"><sphere>' + animated("radius", (9, 1), (10, -1)) + "</sphere></collider><point",
+        4, "b.radius at frame 10 is -1, but must be greater than 0"),
+    "a collider in a group": (
+        "<point", '<group name="g"><collider name="b"><sphere/></collider></group><point', 4,
+        '<group> has no element "collider"; it belongs in <scene>'),
+    "contact and exact steps": (
+        GRID, GRID + '<solver integrator="exact"/></surface><collider name="b"><sphere/></collider>'
+        f'<surface name="other">{GRID}', 3, 'sheet.integrator is "exact", but the collider "b" acts on it'),
+    "contact without a shape at rest": (
+        GRID, GRID + '<solver reference="none"/></surface><collider name="b"><sphere/></collider>'
+        f'<surface name="other">{GRID}', 3, 'sheet.reference is "none", but the collider "b" acts on it'),
+    "contact of what yields": (
+        GRID, GRID + '<material yield="3"/></surface><collider name="b"><sphere/></collider>'
+        f'<surface name="other">{GRID}', 3, "does not meet colliders in this version"),
     "a hold of nothing": (GRID, GRID + "<hold/>", 3, "sheet.hold.0: a hold needs a file, an attribute or vertices"),
     "a hold of vertices and a threshold": (
         GRID, GRID + '<hold vertices="1" above="0.5"/>', 3, 'sheet.hold.0: a hold of vertices has no "above"'),
