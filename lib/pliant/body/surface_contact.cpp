@@ -40,7 +40,7 @@ ContactPlaces::ContactPlaces(const BodyInputs& inputs, const Field& rest, int st
 }
 
 Vector3d ContactPlaces::rest(int step, int node) const {
-  const Vector3d now = rest_->row(node).transpose();
+  Vector3d now = rest_->row(node).transpose();
   if (!inputs_->motion || !inputs_->motion->next_shape || step == 0) return now;
   const Vector3d next = inputs_->motion->next_shape->row(node).transpose();
   const double a = double(step) / step_count();

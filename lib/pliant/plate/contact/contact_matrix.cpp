@@ -206,7 +206,7 @@ Result<std::vector<double>> ContactMatrix::solved(const std::vector<double>& rig
   double before = 0;
   for (int turn = 0; turn < most_turns && largest(left) > least * whole; ++turn) {
     if (context_.is_stopped()) return interrupted();
-    const auto next = preconditioned(left);
+    auto next = preconditioned(left);
     if (!next) return next;
     const double now = dot_product(left, *next);
     if (turn == 0) {
@@ -215,7 +215,7 @@ Result<std::vector<double>> ContactMatrix::solved(const std::vector<double>& rig
       for (std::size_t k = 0; k < way.size(); ++k) way[k] = (*next)[k] + now / before * way[k];
     }
     before = now;
-    const auto product = times(way, plate);
+    auto product = times(way, plate);
     if (!product) return product;
     const double part = now / dot_product(way, *product);
     if (!std::isfinite(part)) break;
