@@ -27,6 +27,7 @@ UNSAID = {
     "numbers of which a double keeps nothing": r"range of numbers that can be stored",
     "the same name twice in a list": r"is given twice",
     "the first and third number of control": r"x1 and x2 must be",
+    "how large a surface may be": r"needs [\d.]+ [GT]B|at most \d+ are allowed",
     "what is in files": r"\.obj|\.png|\.npy|cannot read",
     "rules between values, attributes and elements":
         r"is already (animated|given)|has both|remove one of them|applies only to|needs control|must be (before|after)|"
@@ -280,6 +281,8 @@ class Schema(Command):
             ("the same name twice in a list", surface.format(grid) + '<point name="p" targets="s s"/>'),
             ("the first and third number of control", force.format(animate.replace(
                 'value="0"', 'value="0" interpolation="cubicBezier" control="2 0 0 1"'))),
+            ("how large a surface may be",
+             surface.format('<grid columns="60000" rows="30000" width="1" depth="1"/>')),
             ("what is in files", surface.format('<mesh file="none.obj"/>')),
         ]
         self.assertEqual({rule for rule, _ in unsaid}, set(UNSAID))
