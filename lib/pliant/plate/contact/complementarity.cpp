@@ -33,7 +33,10 @@ Vector3d turned_across(const Vector3d& n, const Vector3d& along) {
 
 }  // namespace
 
-// Those that lay there and are needed push at first; if there are none, all that are needed.
+void Complementarity::begin_step() { before_.clear(); }
+
+// Those that pushed in the solve before push at first. In the first solve of a step these are those
+// that lay there and are needed; if there are none, all that are needed.
 void Complementarity::begin(const std::vector<ContactRow>& rows,
                             const std::vector<double>& bounds) {
   const bool some_lie = std::ranges::any_of(
@@ -44,8 +47,13 @@ void Complementarity::begin(const std::vector<ContactRow>& rows,
   is_rough_ = true;
   forces_.assign(rows.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < rows.size(); ++k) {
-    pushes_[k] = rows[k].sticks || (rows[k].lift > 0 && (rows[k].lies || !some_lie));
-    if (!bounds.empty() && !rows[k].sticks) friction_[k].bound = bounds[k];
+    const auto before = before_.find({rows[k].unknown, rows[k].collider});
+    const bool is_needed = rows[k].lift > 0 && (rows[k].lies || !some_lie);
+    pushes_[k] = rows[k].sticks || (before_.empty() ? is_needed : before != before_.end());
+    if (bounds.empty() || rows[k].sticks) continue;
+    if (before != before_.end()) friction_[k] = before->second;
+    friction_[k].bound = bounds[k];
+    if (bounds[k] == 0) friction_[k] = {};
   }
 }
 
@@ -201,10 +209,20 @@ void Complementarity::smooth(const std::vector<ContactRow>& rows, bool goes_on) 
   is_smooth_ = goes_on;
 }
 
+// What the next solve of the step begins with.
+void Complementarity::keep(const std::vector<ContactRow>& rows) {
+  before_.clear();
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (pushes_[k]) before_.emplace(std::pair(rows[k].unknown, rows[k].collider), friction_[k]);
+  }
+}
+
 Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRow>& rows,
                                                      const std::vector<double>& bounds,
                                                      double tolerance, const SolvedMatrix& plate) {
-  constexpr int patience = 10;         // of pivots in blocks that leave no fewer wrong rows
+  // Of pivots in blocks that leave no fewer wrong rows: a block that is too large is peeled ring by
+  // ring, each larger than the one before. Then those that pull go before those that lack join.
+  constexpr int patience = 40, most_patience = 400;
   constexpr int turns_of_newton = 40;  // that may be needed; then as many smooth ones
   begin(rows, bounds);
   int updates = 0;
@@ -215,11 +233,14 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
   for (std::size_t turns = 0; turns < most_turns; ++turns) {
     if (context_.is_stopped()) return interrupted();
     if (auto turned = turn(rows, plate); !turned) return fail(turned.error());
-    const std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
+    std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
     if (wrong.empty()) {
       // All of it once more, as exactly as it can be; dense factors always are.
       if (bounds.empty()) {
-        if (!is_rough()) return forces_;
+        if (!is_rough()) {
+          keep(rows);
+          return forces_;
+        }
         is_rough_ = false;
         continue;
       }
@@ -229,15 +250,21 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
       if (is_smooth_ || will_be_smooth) {
         smooth(rows, will_be_smooth);
       } else if (!update_friction(rows, tolerance)) {
-        if (!is_rough()) return forces_;
+        if (!is_rough()) {
+          keep(rows);
+          return forces_;
+        }
         is_rough_ = false;
       }
       continue;
     }
     waited = wrong.size() < fewest ? 0 : waited + 1;
     fewest = std::min(fewest, wrong.size());
-    const std::size_t count = waited > patience ? 1 : wrong.size();
-    for (std::size_t n = 0; n < count; ++n) pushes_[wrong[n]] = !pushes_[wrong[n]];
+    const auto pulls = [&](std::size_t row) { return pushes_[row]; };
+    if (waited > patience && std::ranges::any_of(wrong, pulls))
+      std::erase_if(wrong, [&](std::size_t row) { return !pushes_[row]; });
+    if (waited > most_patience) wrong.erase(wrong.begin() + 1, wrong.end());
+    for (const std::size_t row : wrong) pushes_[row] = !pushes_[row];
   }
   return fail(
       ErrorCode::SolverFailed,

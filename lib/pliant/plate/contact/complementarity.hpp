@@ -26,6 +26,9 @@ class Complementarity {
   /// The plate's matrix is another one.
   void forget() { matrix_.forget(); }
 
+  /// A step begins: no solve of it is before the next one.
+  void begin_step();
+
   /// The force of each row, world. `bounds`: of the friction of each row, >= 0; empty: there is
   /// none. Errors: those of the plate's solves; SolverFailed if it does not settle;
   /// Interrupted.
@@ -55,6 +58,7 @@ class Complementarity {
 
   bool is_rough() const { return is_rough_ && !matrix_.is_dense(); }
   void begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
+  void keep(const std::vector<ContactRow>& rows);
   void list_parts(const std::vector<ContactRow>& rows);
   double lift_of(const std::vector<ContactRow>& rows, std::size_t part) const;
   Result<void> turn(const std::vector<ContactRow>& rows, const SolvedMatrix& plate);
@@ -70,6 +74,8 @@ class Complementarity {
   bool is_smooth_ = false;          // friction is that of springs
   bool is_rough_ = true;            // solves are: the sets are not right yet
   std::vector<Friction> friction_;  // of each row
+  // Of those that pushed in the solve before, by unknown and collider.
+  std::map<std::pair<int, int>, Friction> before_;
   std::vector<Part> parts_;
   std::vector<ContactForce> along_;  // of the parts
   std::vector<double> sizes_;        // of the parts

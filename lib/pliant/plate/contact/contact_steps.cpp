@@ -106,6 +106,7 @@ Result<void> step_with_contact(const ContactPlate& plate, Complementarity& probl
     return {};
   };
   if (touches) {
+    problem.begin_step();
     if (auto settled = settle(false); !settled) return settled;
     constexpr int rounds = 3;
     for (int round = 0; round < rounds && has_friction(contact.rows()); ++round) {
