@@ -1,5 +1,7 @@
 #include "pliant/simulation/live.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -49,6 +51,12 @@ Scene of_everything() {
     <point name="slide" magnitude="100" deformationRadius="2" forceRadius="2">
       <path attribute="center" progress="0.25"><waypoint at="-3 0.5 0"/><waypoint at="3 0.5 1"/><waypoint at="0 0 3"/>
       </path></point>
+    <collider name="ball" friction="0.2" targets="sheet"><sphere radius="1.5"/>
+      <transform><animate attribute="translate"><key frame="-2" value="1 3 0"/><key frame="8" value="1 0.5 1"/></animate>
+      </transform></collider>
+    <collider name="bar" offset="0.05" stick="true" enabled="false"><capsule length="3"/>
+      <transform translate="-2 1 0" rotate="90 0 0"/></collider>
+    <collider name="block"><box size="2 0.5 1" round="0.125"/><transform translate="2 -1.5 1"/></collider>
     <group name="pair" center="0 0 1" deformationRadius="3">
       <radial name="left" magnitude="60" center="-1 -1 1" forceRadius="3"/>
       <noise name="right" magnitude="40" forceRadius="3"/>
@@ -166,8 +174,7 @@ TEST_CASE("a live run that sets all channels has the bits of its performance",
       threads);
 }
 
-TEST_CASE("a channel has the value that was set, a transform one frame later",
-          "[simulation][live]") {
+TEST_CASE("a channel has the value that was set, a pose one frame later", "[simulation][live]") {
   auto live = LiveSimulation::make(of_everything()).value();
   REQUIRE(live.advance());
   const auto value_of = [&](const std::string& path, int frame) {
@@ -179,14 +186,17 @@ TEST_CASE("a channel has the value that was set, a transform one frame later",
   };
   for (const std::string& path : paths_of(live.scene())) {
     CAPTURE(path);
-    const bool is_transform =
-        path.ends_with(".translate") || path.ends_with(".rotate") || path.ends_with(".scale");
+    // Colliders go on from where they are as much as surfaces.
+    const bool is_pose =
+        std::ranges::any_of(std::array{".translate", ".rotate", ".scale", ".radius", ".length",
+                                       ".size", ".round", ".offset"},
+                            [&](const char* attribute) { return path.ends_with(attribute); });
     const std::vector<double> before = value_of(path, live.frame());
     std::vector<double> value = before;
     for (double& number : value) number = number == 0 ? 1 : number / 2;
-    if (path.ends_with("enabled")) value = {0};
+    if (path.ends_with("enabled") || path.ends_with("stick")) value = {0};
     REQUIRE(live.set(path, value));
-    CHECK(value_of(path, live.frame()) == (is_transform ? before : value));
+    CHECK(value_of(path, live.frame()) == (is_pose ? before : value));
     CHECK(value_of(path, live.frame() + 1) == value);
     CHECK(value_of(path, 1'000'000) == value);
   }

@@ -43,9 +43,9 @@ struct Input {
   std::string path;
   Range range;
   Of channel;
-  bool changes = false;  // by a curve of the author, which may break a rule at any frame
-  bool is_transform = false;
-  const Force* noise = nullptr;              // the noise whose rate it is
+  bool changes = false;          // by a curve of the author, which may break a rule at any frame
+  bool is_pose = false;          // it says where something is at the end of a step
+  const Force* noise = nullptr;  // the noise whose rate it is
   std::vector<RecordedValue> recorded = {};  // in the order of frames
 };
 
@@ -99,14 +99,16 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
       inputs.push_back({thing.name + '.' + name, attribute.range, &channel, channel.is_animated()});
     });
   };
+  const auto mark = [&](const Input::Of& channel) {
+    for (Input& input : inputs) input.is_pose = input.is_pose || input.channel == channel;
+  };
+  const auto mark_all = [&](auto& part) {
+    for_each_channel(part,
+                     [&](const std::string&, const Attribute&, auto& channel) { mark(&channel); });
+  };
   for (Surface& surface : scene.surfaces) {
-    const std::size_t first = inputs.size();
     add_all(surface);
-    for_each_channel(surface.transform, [&](const std::string&, const Attribute&, auto& channel) {
-      for (std::size_t k = first; k < inputs.size(); ++k) {
-        if (inputs[k].channel == Input::Of(&channel)) inputs[k].is_transform = true;
-      }
-    });
+    mark_all(surface.transform);
   }
   for (Force& force : scene.forces) {
     const std::size_t first = inputs.size();
@@ -119,7 +121,12 @@ std::vector<Input> inputs_that_can_be_set(Scene& scene) {
     }
   }
   for (Group& group : scene.groups) add_all(group);
-  for (Collider& collider : scene.colliders) add_all(collider);
+  for (Collider& collider : scene.colliders) {
+    add_all(collider);
+    mark_all(collider.transform);
+    std::visit(mark_all, collider.shape);
+    mark(&collider.offset);
+  }
   return inputs;
 }
 
@@ -255,7 +262,7 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
   input.changes = false;
   is_checked_ = false;
   if (!records_) return {};
-  const int from = input.is_transform ? frame_ + 1 : frame_;
+  const int from = input.is_pose ? frame_ + 1 : frame_;
   if (!input.recorded.empty() && input.recorded.back().frame == from) input.recorded.pop_back();
   RecordedValue& recorded = input.recorded.emplace_back();
   recorded.frame = from;
@@ -263,17 +270,23 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
   return {};
 }
 
-// A transform becomes keys of three frames, two of which it has now.
+// A pose becomes keys of three frames, two of which it has now.
 std::optional<std::string> LiveSimulation::Run::rule_of_keys(const Input& input) const {
-  if (!input.is_transform) return {};
-  const Channel<3>& channel = *std::get<Channel<3>*>(input.channel);
-  for (const int frame : {frame_ - 1, frame_}) {
-    for (const double number : channel.at(frame)) {
-      if (std::abs(number) <= timeline::largest_number) continue;
-      return fmt::format("the channel is {} at frame {}, which no key can have", number, frame);
-    }
-  }
-  return {};
+  if (!input.is_pose) return {};
+  return std::visit(
+      [&](const auto* channel) -> std::optional<std::string> {
+        if constexpr (!std::is_same_v<decltype(channel), const Switch*>) {
+          for (const int frame : {frame_ - 1, frame_}) {
+            for (const double number : channel->at(frame)) {
+              if (std::abs(number) <= timeline::largest_number) continue;
+              return fmt::format("the channel is {} at frame {}, which no key can have", number,
+                                 frame);
+            }
+          }
+        }
+        return {};
+      },
+      input.channel);
 }
 
 void LiveSimulation::Run::apply(Input& input, std::span<const double> value) {
@@ -288,7 +301,7 @@ void LiveSimulation::Run::apply(Input& input, std::span<const double> value) {
 
 template <int D>
 void LiveSimulation::Run::hold(const Input& input, Channel<D>& channel, const Value<D>& value) {
-  if (input.is_transform) {
+  if (input.is_pose) {
     // Inertia reads three frames.
     channel =
         curve_of<D>({step_key<D>(frame_ - 1, channel.at(frame_ - 1)),
@@ -366,6 +379,7 @@ Result<void> LiveSimulation::Run::step(int frame) {
     const Bodies::Step& step = bodies_.last_step(k);
     if (!step.is_solved_now) continue;
     add_facts(warnings_, scene_.surfaces[k], frame, step.inputs, step.facts);
+    add_contacts(warnings_, scene_, scene_.surfaces[k], frame, bodies_.all()[k]->state().contacts);
     bodies_.look(watch_, k, frame, warnings_);
   }
   return {};
