@@ -81,7 +81,8 @@ Outcome run(const Case& of, const Grid& grid, int frames) {
       std::exit(1);
     }
   }
-  for (const ContactFacts& facts : body.last_contacts()) outcome.pushed += facts.node_count;
+  for (const ContactFacts& facts : body.state().contacts)
+    outcome.pushed += static_cast<int>(facts.nodes.size());
   return outcome;
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Eigen::Index node_count = 9;
 constexpr Hash key{1, 2};
-constexpr std::string_view state_magic("pliant state 1\n\0", 16);
+constexpr std::string_view state_magic("pliant state 2\n\0", 16);
 
 Field rest_of_sheet() {
   Field rest(node_count, 3);

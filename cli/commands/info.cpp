@@ -26,6 +26,29 @@ BoundingBox bounding_box(const Field& points) {
   return {points.colwise().minCoeff().transpose(), points.colwise().maxCoeff().transpose()};
 }
 
+// Plays the animation for what colliders touch, unless that takes too long.
+Result<void> play_contacts(SceneFacts& facts, Simulation& simulation) {
+  constexpr double most_steps = 1e8;  // of nodes
+  const Scene& scene = facts.scene;
+  if (facts.contacts.empty() || facts.no_first_frame) return {};
+  double nodes = 0;
+  for (const ContactSummary& contact : facts.contacts)
+    nodes += static_cast<double>(simulation.rest_shapes()[contact.surface].rest.rows());
+  double steps = 0;
+  for (int frame = scene.start; frame <= scene.end; ++frame) {
+    const auto report = simulation.report(frame);
+    if (!report) return fail(report.error());
+    for (ContactSummary& contact : facts.contacts) {
+      const SurfaceReport& of = report->surfaces[contact.surface];
+      add_contacts(contact, frame, of.contacts);
+      steps += of.steps.count * nodes;
+    }
+    if (steps > most_steps) return {};
+  }
+  facts.is_contact_played = true;
+  return {};
+}
+
 // Computes all facts that need the meshes. Returns whether there is a first frame.
 Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                               const SimulationOptions& run) {
@@ -48,6 +71,8 @@ Result<bool> look_at_surfaces(SceneFacts& facts, Simulation& simulation,
                           std::ranges::count_if(*shape.held, [](auto mark) { return mark != 0; }))
                     : 0});
   }
+  facts.contacts = contact_summaries(facts.scene, simulation.rest_shapes());
+  if (auto played = play_contacts(facts, simulation); !played) return fail(played.error());
   facts.surface_memory = simulation.surface_memory();
   for (const Preview& preview : facts.previews) {
     for (const RegionPreview& region : preview.regions) {

@@ -86,6 +86,23 @@ Json region_json(const RegionPreview& region) {
   return json;
 }
 
+Json contact_json(const ContactSummary& contact, const SceneFacts& facts) {
+  const Collider& collider = facts.scene.colliders[contact.collider];
+  const auto at = [](int frame, double value) {
+    return frame == 0 && value == 0 ? Json(nullptr) : Json(frame);
+  };
+  return {{"name", collider.name},
+          {"shape", shape_of(collider)},
+          {"surface", facts.scene.surfaces[contact.surface].name},
+          {"everyFrame", facts.is_contact_played},
+          {"firstTouch", contact.first_touch ? Json(*contact.first_touch) : Json(nullptr)},
+          {"mostNodes", contact.most_nodes},
+          {"mostNodesFrame", at(contact.most_nodes_frame, contact.most_nodes)},
+          {"largestForce", contact.largest_force},
+          {"largestForceFrame", at(contact.largest_force_frame, contact.largest_force)},
+          {"hidingOffset", contact.hiding_offset ? Json(*contact.hiding_offset) : Json(nullptr)}};
+}
+
 Json previews_json(const std::vector<const Preview*>& previews, const Scene& scene) {
   Json json = Json::array();
   for (const Preview* const preview : previews) json.push_back(preview_json(*preview, scene));
@@ -195,6 +212,9 @@ std::string info_json(const SceneFacts& facts) {
                               {"previews", previews_json(of_groups[k], scene)}});
   }
   json["together"] = previews_json(previews_of(facts, Preview::Of::All).front(), scene);
+  json["colliders"] = Json::array();
+  for (const ContactSummary& contact : facts.contacts)
+    json["colliders"].push_back(contact_json(contact, facts));
   json["channels"] = Json::array();
   for (const NamedChannel& channel : channels_of(scene)) {
     if (!channel.is_animated()) continue;

@@ -289,6 +289,31 @@ std::string forces_text(const SceneFacts& facts) {
   return text;
 }
 
+std::string colliders_text(const SceneFacts& facts) {
+  if (facts.contacts.empty()) return {};
+  const Scene& scene = facts.scene;
+  std::string text = "colliders, over the animation\n";
+  for (const ContactSummary& contact : facts.contacts) {
+    const Collider& collider = scene.colliders[contact.collider];
+    text += fmt::format("  {} ({}) on {}: ", collider.name, shape_of(collider),
+                        scene.surfaces[contact.surface].name);
+    if (contact.first_touch) {
+      text += fmt::format(
+          "first touches at frame {}; at most {} at frame {}, with a force of {:.4g} "
+          "at frame {}\n",
+          *contact.first_touch, counted(contact.most_nodes, "node"), contact.most_nodes_frame,
+          contact.largest_force, contact.largest_force_frame);
+    } else {
+      text += facts.is_contact_played ? "touches nothing\n"
+                                      : "too many frames and nodes to play the animation\n";
+    }
+    if (contact.hiding_offset && *contact.hiding_offset > 0)
+      text += fmt::format("    offset {:.3g} keeps the faces between nodes outside too\n",
+                          *contact.hiding_offset);
+  }
+  return text;
+}
+
 template <int D>
 std::string value_text(const Value<D>& value) {
   return fmt::format("{:g}", fmt::join(value, " "));
@@ -355,7 +380,7 @@ std::string info_text(const SceneFacts& facts) {
   for (std::size_t k = 0; k < facts.surfaces.size(); ++k) {
     text += surface_text(scene.surfaces[k], facts.surfaces[k]);
   }
-  text += forces_text(facts) + channels_text(scene);
+  text += forces_text(facts) + colliders_text(facts) + channels_text(scene);
   text += fmt::format("memory\n  {} for the surfaces", bytes_text(facts.surface_memory));
   if (facts.solver_memory > 0) {
     text += fmt::format(", {} for the solver of the largest region that was solved",

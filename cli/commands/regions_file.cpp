@@ -42,6 +42,16 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
   return json;
 }
 
+Json contacts_json(const std::vector<ContactFacts>& contacts, const Scene& scene) {
+  Json json = Json::array();
+  for (const ContactFacts& facts : contacts) {
+    json.push_back({{"collider", scene.colliders[static_cast<std::size_t>(facts.collider)].name},
+                    {"nodes", facts.nodes.size()},
+                    {"force", to_json(facts.force)}});
+  }
+  return json;
+}
+
 Json surface_json(const Simulation& simulation, std::size_t surface, const SurfaceReport& report,
                   const std::map<std::string_view, const Force*>& named) {
   Json regions = Json::array();
@@ -70,7 +80,8 @@ Json surface_json(const Simulation& simulation, std::size_t surface, const Surfa
                {"recovering", report.recovering},
                {"settled", report.settled},
                {"regions", regions},
-               {"forces", forces}};
+               {"forces", forces},
+               {"contacts", contacts_json(report.contacts, simulation.scene())}};
   if (!report.is_surface) return json;
   for (const char* of_grid : {"selected", "regions"}) json.erase(of_grid);
   json["grid"] = nullptr;

@@ -32,6 +32,8 @@ struct SceneFacts {
   };
   std::vector<SurfaceFacts> surfaces = {};
   std::vector<Preview> previews = {};
+  std::vector<ContactSummary> contacts = {};
+  bool is_contact_played = false;            ///< false: too many frames and nodes, or no cycle
   std::optional<Error> no_first_frame = {};  ///< why there is none: a loop closes to no cycle
   std::vector<Warning> warnings = {};        ///< that need no frame
   std::size_t surface_memory = 0;            ///< [bytes]

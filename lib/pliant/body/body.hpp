@@ -75,14 +75,6 @@ TimeSteps steps_of(const BodyInputs& inputs, const BodySettings& settings,
 
 class PatchPlate;
 
-/// What of a body a collider held back in a step.
-struct ContactFacts {
-  int node_count = 0;          ///< that it pushed
-  Vector3d force = {0, 0, 0};  ///< on all of them, world
-
-  friend bool operator==(const ContactFacts&, const ContactFacts&) = default;
-};
-
 /// A patch that a plan moves.
 struct MovedPatch {
   std::vector<int> nodes;     ///< that move, in the order of the unknowns of its plate
@@ -120,9 +112,6 @@ class Body {
   /// The velocities that the last step that solved began with; #nodes x 3.
   virtual const Field& velocities_before() const = 0;
 
-  /// Of each collider of the inputs, at the end of the last step; empty: it met none.
-  virtual std::vector<ContactFacts> last_contacts() const { return {}; }
-
   /// The effect of a force, by its index in the inputs, in the step that `plan` plans for them.
   virtual Push push_of(const BodyInputs& inputs, const StepPlan& plan, std::size_t force) const = 0;
 
@@ -150,6 +139,9 @@ class Body {
   const Field& measured(const BodyInputs& inputs, Field& room) const;
 
   BodyState rest_state() const;  ///< after a `reset`
+
+  /// A frame passes without a solve: what touched in the one before does so no longer.
+  void touch_nothing() { state_.contacts.clear(); }
 
   /// Continues from `state`, the result of `state()` of a body like this one.
   void restore(BodyState state);

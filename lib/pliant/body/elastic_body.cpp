@@ -10,9 +10,9 @@
 namespace pliant {
 
 Result<void> ElasticBody::step(const BodyInputs& inputs) {
-  contact_.begin_frame({}, {}, 1);
   if (inputs.forces.empty() && !inputs.selects_by_colliders() && waits_for_forces()) {
     plan_ = {};
+    touch_nothing();
     return {};
   }
   StageTimer planning(context_.profile, Stage::Selection);
@@ -21,12 +21,13 @@ Result<void> ElasticBody::step(const BodyInputs& inputs) {
   if (context_.is_stopped()) return interrupted();
   if (!plan_.solves()) {
     put_at_rest(plan_.settling);
+    touch_nothing();
     return {};
   }
   keep_patches(inputs);
   if (!inputs.colliders.empty()) {
     contact_.begin_frame({inputs, rest_at(inputs), plan_.steps.count}, inputs.colliders,
-                         contact_share());
+                         contact_share(), state_.contacts);
   }
   // Builds the next state beside the current one, which is kept until the next one is complete.
   StageTimer beginning(context_.profile, Stage::StateOut);
@@ -34,6 +35,13 @@ Result<void> ElasticBody::step(const BodyInputs& inputs) {
   beginning.stop();
   if (auto solved = solve(inputs); !solved) return solved;
   if (context_.is_stopped()) return interrupted();
+  next_.contacts.clear();
+  if (!inputs.colliders.empty()) {
+    contact_.end_frame([this](int node) -> Vector3d {
+      return (next_.positions.row(node) - rest_.row(node)).transpose();
+    });
+    next_.contacts = contact_.take_facts();
+  }
   const StageTimer ending(context_.profile, Stage::StateOut);
   if (remembers_push()) keep_push(inputs.tangents);
   return take();

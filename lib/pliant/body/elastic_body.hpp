@@ -42,7 +42,6 @@ class ElasticBody : public Body {
   Result<void> step(const BodyInputs& inputs) final;
   const StepPlan& last_step() const final { return plan_; }
   const Field& velocities_before() const final { return next_.velocities; }
-  std::vector<ContactFacts> last_contacts() const final { return contact_.facts(); }
 
  protected:
   ElasticBody(Field rest, Eigen::Index plastic_places, const BodySettings& settings,

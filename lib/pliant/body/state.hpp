@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +18,33 @@ struct LastPush {
   friend bool operator==(const LastPush&, const LastPush&) = default;
 };
 
+/// Nodes inside a solid, and how deep.
+struct NodesInside {
+  int count = 0;
+  double depth = 0;  ///< of the deepest [length]
+
+  void add(double depth_of_node) {
+    ++count;
+    depth = std::max(depth, depth_of_node);
+  }
+
+  friend bool operator==(const NodesInside&, const NodesInside&) = default;
+};
+
+/// What a collider did to a body in the solve that led to a state. Nothing is computed from it.
+struct ContactFacts {
+  int collider = 0;             ///< as of `SampledCollider`
+  std::vector<int> nodes = {};  ///< that it pushed in the last step, ascending
+  Vector3d force = {0, 0, 0};   ///< on all of them, world; on triangles without the area of a node
+  bool touched = false;         ///< whether it pushed in some step
+  NodesInside thrown = {};      ///< nodes that began inside, and were thrown out at once
+  NodesInside held = {};        ///< nodes that do not move, and are inside at the end
+  std::vector<int> squeezed =
+      {};  ///< colliders that held on to nodes which it pressed against them
+
+  friend bool operator==(const ContactFacts&, const ContactFacts&) = default;
+};
+
 /// The state that one frame passes on to the next.
 struct BodyState {
   Field positions;   ///< #nodes x 3, object space [length]; if the rest shape is animated, the
@@ -32,6 +60,9 @@ struct BodyState {
   /// Of a body that yields: a row for each node of a grid, for each triangle of a surface [1].
   /// Those that no solve holds rest as they are. Otherwise empty.
   PlasticField plastic = {};
+
+  /// Of each collider that the last solve met; empty: there was none, or no solve.
+  std::vector<ContactFacts> contacts = {};
 
   friend bool operator==(const BodyState&, const BodyState&) = default;
 };

@@ -63,18 +63,28 @@ const Field* ContactPlaces::next_rest() const {
 }
 
 void SurfaceContact::begin_frame(ContactPlaces places,
-                                 const std::vector<SampledCollider>& colliders, double share) {
+                                 const std::vector<SampledCollider>& colliders, double share,
+                                 const std::vector<ContactFacts>& before) {
   places_ = std::move(places);
   sampled_ = colliders;
   share_ = share;
-  facts_.assign(colliders.size(), {});
-  step_facts_.clear();
+  facts_.clear();
+  is_new_.clear();
+  for (const SampledCollider& collider : colliders) {
+    facts_.emplace_back().collider = collider.index;
+    is_new_.push_back(std::ranges::find(before, collider.index, &ContactFacts::collider) ==
+                      before.end());
+  }
+  moves_.assign(static_cast<std::size_t>(places_.first_rest().rows()), 0);
+  pushes_.clear();
 }
 
 void SurfaceContact::begin_patch(std::span<const RowRun> moved) {
   nodes_.clear();
-  for (const RowRun& run : moved)
+  for (const RowRun& run : moved) {
     for (int k = 0; k < run.count; ++k) nodes_.push_back(run.node + k);
+    std::fill_n(moves_.begin() + run.node, run.count, std::uint8_t{1});
+  }
   const auto gather = [&](const Field& nodes, Field& own) {
     own.resize(static_cast<Eigen::Index>(nodes_.size()), 3);
     Eigen::Index first = 0;
@@ -87,7 +97,7 @@ void SurfaceContact::begin_patch(std::span<const RowRun> moved) {
   gather(places_.first_rest(), rest_);
   next_rest_.resize(0, 3);
   if (const Field* const next = places_.next_rest()) gather(*next, next_rest_);
-  step_facts_.clear();
+  pushes_.clear();
 }
 
 // The unknowns in the world as a step begins.
@@ -112,7 +122,7 @@ bool SurfaceContact::begin(int step, const Field& from, const Field& to) {
   joined_.assign(sampled_.size() * nodes_.size(), 0);
   found_.clear();
   rows_.clear();
-  step_facts_.assign(sampled_.size(), {});
+  pushes_.assign(sampled_.size(), {});
   return find(true);
 }
 
@@ -160,6 +170,11 @@ bool SurfaceContact::find(bool is_first) {
     const PlacedCollider& to = places_.colliders(step_ + 1)[static_cast<std::size_t>(collider)];
     const Vector3d before = before_.row(unknown).transpose(),
                    after = after_.row(unknown).transpose();
+    if (is_first && step_ == 0 && is_new_[static_cast<std::size_t>(collider)]) {
+      const double distance = nearness(from.kept, from.to_frame(before)).distance;
+      if (distance < -lying * places_.diagonal())
+        facts_[static_cast<std::size_t>(collider)].thrown.add(-distance);
+    }
     std::optional<NodeRow> row;
     if (is_first && sampled.sticks)
       row = lying_row_of(from, to, before, lying * places_.diagonal());
@@ -170,7 +185,8 @@ bool SurfaceContact::find(bool is_first) {
     row->node = unknown;
     row->collider = collider;
     row->sticks = sampled.sticks;
-    found_.add(*row, after);
+    if (found_.add(*row, after) == NodeRows::Offer::Squeezed)
+      note_squeeze(collider, found_.squeezer_of(*row)->collider);
   }
   if (joins) list_rows();
   return joins;
@@ -196,26 +212,49 @@ void SurfaceContact::list_rows() {
   }
 }
 
+// What one solid presses against another, which came first and stays.
+void SurfaceContact::note_squeeze(int collider, int squeezer) {
+  std::vector<int>& squeezed = facts_[static_cast<std::size_t>(collider)].squeezed;
+  const int index = sampled_[static_cast<std::size_t>(squeezer)].index;
+  const auto place = std::ranges::lower_bound(squeezed, index);
+  if (place == squeezed.end() || *place != index) squeezed.insert(place, index);
+}
+
 void SurfaceContact::end(const std::vector<Vector3d>& forces) {
-  step_facts_.assign(sampled_.size(), {});
-  const ContactRow* last = nullptr;
+  pushes_.assign(sampled_.size(), {});
   for (std::size_t k = 0; k < forces.size(); ++k) {
     const ContactRow& row = rows_[k];
     if (forces[k].isZero(0)) continue;
-    ContactFacts& facts = step_facts_[static_cast<std::size_t>(row.collider)];
-    facts.force += share_ * forces[k];
-    const bool is_counted = last && last->unknown == row.unknown && last->collider == row.collider;
-    if (!is_counted) ++facts.node_count;
-    last = &row;
+    const auto collider = static_cast<std::size_t>(row.collider);
+    auto& [nodes, force] = pushes_[collider];
+    force += share_ * forces[k];
+    const int node = nodes_[static_cast<std::size_t>(row.unknown)];
+    if (nodes.empty() || nodes.back() != node) nodes.push_back(node);
+    facts_[collider].touched = true;
   }
 }
 
 void SurfaceContact::end_patch() {
-  for (std::size_t c = 0; c < step_facts_.size(); ++c) {
-    facts_[c].node_count += step_facts_[c].node_count;
-    facts_[c].force += step_facts_[c].force;
+  for (std::size_t c = 0; c < pushes_.size(); ++c) {
+    facts_[c].nodes.insert(facts_[c].nodes.end(), pushes_[c].nodes.begin(), pushes_[c].nodes.end());
+    facts_[c].force += pushes_[c].force;
   }
-  step_facts_.clear();
+  pushes_.clear();
+}
+
+void SurfaceContact::end_frame(const std::function<Vector3d(int node)>& displacement) {
+  const int end = places_.step_count();
+  for (std::size_t c = 0; c < sampled_.size(); ++c) {
+    const PlacedCollider& solid = places_.colliders(end)[c];
+    for (int node = 0; node < static_cast<int>(moves_.size()); ++node) {
+      if (moves_[static_cast<std::size_t>(node)]) continue;
+      const Vector3d object = places_.rest(end, node) + displacement(node);
+      const Vector3d world = pliant::to_world(places_.transform(end), object);
+      const double distance = nearness(solid.kept, solid.to_frame(world)).distance;
+      if (distance < -lying * places_.diagonal()) facts_[c].held.add(-distance);
+    }
+    std::ranges::sort(facts_[c].nodes);
+  }
 }
 
 double SurfaceContact::tolerance() const {

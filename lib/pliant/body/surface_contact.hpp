@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -48,15 +49,19 @@ class ContactPlaces {
 /// The contact of a body, one patch after the other. docs/model.md, "Contact". Internal to body.
 class SurfaceContact final : public StepContact {
  public:
-  /// Begins a frame. `share`: of area that a node has, by which forces are multiplied.
+  /// Begins a frame. `share`: of area that a node has, by which forces are multiplied. `before`:
+  /// facts of the last solve.
   void begin_frame(ContactPlaces places, const std::vector<SampledCollider>& colliders,
-                   double share);
+                   double share, const std::vector<ContactFacts>& before);
 
   /// Turns to a patch, whose unknowns are the nodes of these rows in their order.
   void begin_patch(std::span<const RowRun> moved);
 
-  /// Counts what touched in the last step of the patch.
+  /// Takes what touched in the last step of the patch.
   void end_patch();
+
+  /// Finds what no patch moves and is inside. `displacement`: of a node at the end, object space.
+  void end_frame(const std::function<Vector3d(int node)>& displacement);
 
   bool begin(int step, const Field& from, const Field& to) override;
   bool join(const Field& to) override;
@@ -66,8 +71,8 @@ class SurfaceContact final : public StepContact {
   Matrix3d to_plate() const override { return inverse_linear(places_.transform(step_ + 1)); }
   Matrix3d to_world() const override { return places_.transform(step_ + 1).linear; }
 
-  /// Of each collider, in the last step of each patch of the frame.
-  const std::vector<ContactFacts>& facts() const { return facts_; }
+  /// Of each collider, once a frame has ended.
+  std::vector<ContactFacts> take_facts() { return std::move(facts_); }
 
  private:
   struct Pair {
@@ -77,6 +82,7 @@ class SurfaceContact final : public StepContact {
   void place(int step, const Field& displacement, Field& world);
   std::vector<Pair> near_pairs() const;
   bool find(bool is_first);
+  void note_squeeze(int collider, int squeezer);
   void list_rows();
 
   ContactPlaces places_;
@@ -90,7 +96,14 @@ class SurfaceContact final : public StepContact {
   std::vector<std::uint8_t> joined_;  // of each collider, of each unknown
   NodeRows found_;
   std::vector<ContactRow> rows_;
-  std::vector<ContactFacts> facts_, step_facts_;  // of the patches before, of this one's last step
+  std::vector<std::uint8_t> moves_;   // of each node: whether some patch moves it
+  std::vector<std::uint8_t> is_new_;  // of each collider: whether the last solve did not meet it
+  std::vector<ContactFacts> facts_;
+  struct Pushes {
+    std::vector<int> nodes = {};
+    Vector3d force = {0, 0, 0};
+  };
+  std::vector<Pushes> pushes_;  // of each collider, in the patch's last step so far
 };
 
 }  // namespace pliant

@@ -32,6 +32,7 @@ struct SampledCollider {
   double deformation_radius = 0;  ///< of what it selects, >= 0; 0: nothing [length]
   double friction = 0;            ///< mu >= 0 [1]
   bool sticks = false;            ///< what touches it is held
+  int index = 0;                  ///< in the scene: whom facts are about
 };
 
 /// The collider at part `a` of its way: each number of its pose (1 - a) of the first and a of the

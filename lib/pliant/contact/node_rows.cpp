@@ -1,5 +1,6 @@
 #include "pliant/contact/node_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace pliant {
@@ -65,6 +66,15 @@ std::optional<NodeRow> lying_row_of(const PlacedCollider& from, const PlacedColl
   return row_at(to, {nearest.normal, x - nearest.distance * nearest.normal});
 }
 
+const NodeRow* NodeRows::squeezer_of(const NodeRow& row) const {
+  const auto own = rows_.find(row.node);
+  if (own == rows_.end()) return nullptr;
+  const auto found = std::ranges::find_if(own->second, [&](const NodeRow& other) {
+    return dot_of(row.normal, other.normal) < squeeze;
+  });
+  return found == own->second.end() ? nullptr : &*found;
+}
+
 NodeRows::Offer NodeRows::add(const NodeRow& row, const Vector3d& at) {
   std::vector<NodeRow>& own = rows_[row.node];
   if (!own.empty() && own.front().sticks) return Offer::Dropped;
@@ -72,13 +82,10 @@ NodeRows::Offer NodeRows::add(const NodeRow& row, const Vector3d& at) {
     own.assign(1, row);
     return Offer::Taken;
   }
-  NodeRow* same = nullptr;
-  for (NodeRow& other : own) {
-    const double cosine = dot_of(row.normal, other.normal);
-    if (cosine < squeeze) return Offer::Squeezed;
-    if (cosine > one_wall && !same) same = &other;
-  }
-  if (same) {
+  if (squeezer_of(row)) return Offer::Squeezed;
+  const auto same = std::ranges::find_if(
+      own, [&](const NodeRow& other) { return dot_of(row.normal, other.normal) > one_wall; });
+  if (same != own.end()) {
     if (row.lack(at) > same->lack(at)) *same = row;
     return Offer::Same;
   }

@@ -48,6 +48,9 @@ class NodeRows {
   /// offered.
   Offer add(const NodeRow& row, const Vector3d& at);
 
+  /// The row that keeps another from its node; null: none is against it.
+  const NodeRow* squeezer_of(const NodeRow& row) const;
+
   /// By node, ascending, and in the order in which they came.
   std::vector<NodeRow> all() const;
 

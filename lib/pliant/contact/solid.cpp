@@ -103,6 +103,11 @@ double reach(const Solid& solid) {
   return std::visit(Reach(), solid);
 }
 
+double inner_radius(const Solid& solid) {
+  const auto* const box = std::get_if<BoxSolid>(&solid);
+  return box ? box->size.minCoeff() / 2 : least_radius(solid);
+}
+
 double least_radius(const Solid& solid) {
   struct Radius {
     double operator()(const SphereSolid& sphere) const { return sphere.radius; }

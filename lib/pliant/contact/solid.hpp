@@ -61,6 +61,9 @@ Solid between(const Solid& one, const Solid& other, double t);
 /// No place of the solid is farther from the origin. Infinite for a plane. [length]
 double reach(const Solid& solid);
 
+/// Of the largest ball inside it, infinite for a plane. [length]
+double inner_radius(const Solid& solid);
+
 /// The least radius of its curvature, infinite for a plane, 0 for a box with sharp edges. [length]
 double least_radius(const Solid& solid);
 

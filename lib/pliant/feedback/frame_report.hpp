@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/body/state.hpp"
 #include "pliant/core/hash.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/feedback/surface_lines.hpp"
@@ -44,6 +45,9 @@ struct SurfaceReport {
   Box selected;                     ///< the smallest around all regions
   std::vector<Region> regions;      ///< also those too small to solve
   std::vector<ForceReport> forces;  ///< in the order of the scene, then those of groups
+  /// What colliders did in the solve before, which led to this frame: they hold back the nodes as
+  /// they are now.
+  std::vector<ContactFacts> contacts = {};
 
   /// On a surface of triangles, which has patches in place of regions.
   bool is_surface = false;

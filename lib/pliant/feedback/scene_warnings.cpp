@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/feedback/contact_summary.hpp"
 #include "pliant/feedback/scene_look.hpp"
 #include "pliant/feedback/warnings.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
@@ -60,7 +61,8 @@ class SceneWarnings {
         solved_(solved_frames(played_)),
         all_solved_(ranges_of(solved_)),
         surfaces_of_force_(scene.forces.size()),
-        surfaces_of_group_(scene.groups.size()) {
+        surfaces_of_group_(scene.groups.size()),
+        surfaces_of_collider_(scene.colliders.size()) {
     for (std::size_t k = 0; k < scene.groups.size(); ++k) groups_[scene.groups[k].name] = k;
     const std::vector<SurfaceTargets> targets = targets_of(scene);
     for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
@@ -69,6 +71,8 @@ class SceneWarnings {
         surfaces_of_force_[member.force].push_back(&scene.surfaces[k]);
       for (const std::size_t group : targets[k].groups)
         surfaces_of_group_[group].push_back(&scene.surfaces[k]);
+      for (const std::size_t collider : targets[k].colliders)
+        surfaces_of_collider_[collider].push_back(&scene.surfaces[k]);
     }
   }
 
@@ -85,6 +89,10 @@ class SceneWarnings {
     for (std::size_t k = 0; k < scene_.groups.size(); ++k) {
       if (is_on(scene_.groups[k].enabled))
         add_unused_radius(scene_.groups[k], surfaces_of_group_[k]);
+    }
+    for (std::size_t k = 0; k < scene_.colliders.size(); ++k) {
+      if (is_on(scene_.colliders[k].enabled))
+        add_unused_radius(scene_.colliders[k], surfaces_of_collider_[k]);
     }
     return std::move(warnings_);
   }
@@ -114,6 +122,8 @@ class SceneWarnings {
     }
     for (const Group& group : scene_.groups)
       if (is_on(group.enabled)) played.emplace(group.name, played_);
+    for (const Collider& collider : scene_.colliders)
+      if (is_on(collider.enabled)) played.emplace(collider.name, played_);
     for (const NamedChannel& channel : channels_of(scene_)) {
       const auto keys = keys_of(channel);
       const auto found =
@@ -185,7 +195,8 @@ class SceneWarnings {
   FrameSpan played_, solved_;
   FrameRanges all_solved_;
   std::map<std::string_view, std::size_t> groups_;
-  std::vector<std::vector<const Surface*>> surfaces_of_force_, surfaces_of_group_;
+  std::vector<std::vector<const Surface*>> surfaces_of_force_, surfaces_of_group_,
+      surfaces_of_collider_;
   std::vector<Warning> warnings_;
 };
 
@@ -320,6 +331,24 @@ void add_map(std::vector<Warning>& warnings, const Surface& surface, const Mater
   warning.told = std::move(told);
 }
 
+// Colliders that fit between the nodes of a surface.
+void add_gaps(std::vector<Warning>& warnings, const Scene& scene, const Surface& surface,
+              const RestShape& shape, const SurfaceTargets& targets) {
+  if (!is_solved(surface) || targets.colliders.empty()) return;
+  const double spacing = spacing_of(scene, surface, shape).mean;
+  for (const std::size_t k : targets.colliders) {
+    const Collider& collider = scene.colliders[k];
+    const double radius = inner_radius(placed_at(collider, scene.start).kept.solid);
+    if (!is_on(collider.enabled) || !(spacing > radius)) continue;
+    Warning& warning = warnings.emplace_back();
+    warning.kind = Kind::PassesBetween;
+    warning.surface = surface.name;
+    warning.force = collider.name;
+    warning.told =
+        fmt::format("they are {:.3g} apart, and its least radius is {:.3g}", spacing, radius);
+  }
+}
+
 void add_cache(std::vector<Warning>& warnings, const Scene& scene, const RestShape& shape,
                const Surface& surface) {
   const auto cache = cache_summary_of(shape);
@@ -360,6 +389,7 @@ std::vector<Warning> warnings_about(std::span<const RestShape> rest_shapes, cons
       if (map != surface.maps.end()) add_map(warnings, surface, *map, summary);
     }
     add_drifts(warnings, scene, surface, shape, targets[k]);
+    add_gaps(warnings, scene, surface, shape, targets[k]);
   }
   for (Warning& warning : warnings_about(scene)) warnings.push_back(std::move(warning));
   return warnings;

@@ -9,12 +9,21 @@ namespace pliant {
 FrameRanges& WarningLog::frames_of(FramesOfCauses& causes, const CauseView& cause) {
   const auto found = causes.find(cause);
   if (found != causes.end()) return found->second;
-  return causes[{cause.kind, std::string(cause.surface), std::string(cause.force)}];
+  return causes[{cause.kind, std::string(cause.surface), std::string(cause.force),
+                 std::string(cause.other)}];
 }
 
 void WarningLog::add(Warning::Kind kind, std::string_view surface, std::string_view force,
-                     int frame) {
-  frames_of(frames_, {kind, surface, force}).add(frame);
+                     int frame, std::string_view other) {
+  frames_of(frames_, {kind, surface, force, other}).add(frame);
+}
+
+void WarningLog::add_inside(Warning::Kind kind, std::string_view surface, std::string_view collider,
+                            int frame, const NodesInside& inside) {
+  if (inside.count == 0) return;
+  add(kind, surface, collider, frame);
+  NodesInside& worst = inside_[{kind, std::string(surface), std::string(collider)}];
+  worst = {std::max(worst.count, inside.count), std::max(worst.depth, inside.depth)};
 }
 
 void WarningLog::expect(Warning::Kind kind, std::string_view surface, std::string_view force,
@@ -45,6 +54,9 @@ std::vector<Warning> WarningLog::warnings(const Scene& scene, bool is_range_comp
     }
     Warning& warning = warnings.emplace_back();
     warning = {cause.kind, cause.surface, cause.force, frames};
+    if (!cause.other.empty()) warning.others.push_back(cause.other);
+    if (const auto inside = inside_.find(cause); inside != inside_.end())
+      warning.inside = inside->second;
     warning.is_of_part = !is_range_complete && never.contains(cause);
   }
   // An author who writes combine="box" explicitly needs no warning.
@@ -95,6 +107,21 @@ void add_facts(WarningLog& log, const Surface& of, int frame, const SurfaceInput
   if (!inputs.body.tangents.are_zero()) {
     log.expect(TangentsUnused, surface, {}, frame);
     if (facts.is_solved) log.happened(TangentsUnused, surface, {});
+  }
+}
+
+void add_contacts(WarningLog& log, const Scene& scene, const Surface& surface, int frame,
+                  const std::vector<ContactFacts>& contacts) {
+  using enum Warning::Kind;
+  const auto name_of = [&](int collider) -> std::string_view {
+    return scene.colliders.at(static_cast<std::size_t>(collider)).name;
+  };
+  for (const ContactFacts& facts : contacts) {
+    const std::string_view collider = name_of(facts.collider);
+    log.add_inside(BeginsInside, surface.name, collider, frame, facts.thrown);
+    log.add_inside(HeldInside, surface.name, collider, frame + 1, facts.held);
+    for (const int other : facts.squeezed)
+      log.add(Squeezed, surface.name, collider, frame + 1, name_of(other));
   }
 }
 

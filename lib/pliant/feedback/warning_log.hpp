@@ -16,7 +16,13 @@ namespace pliant {
 /// Collects warnings by cause, each with all its frames.
 class WarningLog {
  public:
-  void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame);
+  /// `other`: of the two colliders that squeeze something.
+  void add(Warning::Kind kind, std::string_view surface, std::string_view force, int frame,
+           std::string_view other = {});
+
+  /// Nodes inside a collider, if there are some.
+  void add_inside(Warning::Kind kind, std::string_view surface, std::string_view collider,
+                  int frame, const NodesInside& inside);
 
   /// Notes that something is expected to happen at some frame of the range, perhaps this one. If it
   /// `happened` at none so far, it is a warning with all these frames.
@@ -33,6 +39,7 @@ class WarningLog {
     Warning::Kind kind;
     std::string_view surface;
     std::string_view force;
+    std::string_view other = {};
     // NOLINTNEXTLINE(modernize-use-nullptr): not a pointer, but the 0 that <=> compares with
     friend auto operator<=>(const CauseView&, const CauseView&) = default;
   };
@@ -40,7 +47,8 @@ class WarningLog {
     Warning::Kind kind;
     std::string surface;
     std::string force;
-    operator CauseView() const { return {kind, surface, force}; }
+    std::string other = {};
+    operator CauseView() const { return {kind, surface, force, other}; }
   };
   // Finds a cause without copying its names.
   struct Before {
@@ -54,10 +62,15 @@ class WarningLog {
   FramesOfCauses frames_;
   FramesOfCauses expected_;
   std::set<Cause, Before> happened_;
+  std::map<Cause, NodesInside, Before> inside_;
 };
 
 /// Adds the facts of one surface's step at a frame.
 void add_facts(WarningLog& log, const Surface& surface, int frame, const SurfaceInputs& inputs,
                const StepFacts& facts);
+
+/// Adds those of its contacts, which have come to be at the next frame.
+void add_contacts(WarningLog& log, const Scene& scene, const Surface& surface, int frame,
+                  const std::vector<ContactFacts>& contacts);
 
 }  // namespace pliant

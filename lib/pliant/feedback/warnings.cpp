@@ -19,6 +19,8 @@ std::string names_text(const std::string& first, const std::vector<std::string>&
   return fmt::format("{} and {} more", fmt::join(told, ", "), more);
 }
 
+std::string nodes_text(int count) { return fmt::format("{} node{}", count, count == 1 ? "" : "s"); }
+
 // Authors do not read longer lists.
 constexpr std::size_t most_ranges = 8;
 
@@ -163,6 +165,29 @@ std::string Warning::own_message() const {
           force, told, when);
     case Kind::MapOutside:
       return fmt::format("{} is a map outside 0 to 1: {}", channel, told);
+    case Kind::BeginsInside:
+      return fmt::format(
+          "{} of \"{}\" begin{} inside \"{}\" {}, up to {:.3g} deep, and {} thrown out at once; "
+          "grow offset from 0 instead, or begin outside",
+          nodes_text(inside.count), surface, inside.count == 1 ? "s" : "", force, when,
+          inside.depth, inside.count == 1 ? "is" : "are");
+    case Kind::HeldInside:
+      return fmt::format(
+          "{} of \"{}\" {} inside \"{}\" {}, up to {:.3g} deep: {} held, or outside the solved "
+          "region, which wins over a collider; move it, let them go, or select more by a larger "
+          "deformationRadius",
+          nodes_text(inside.count), surface, inside.count == 1 ? "is" : "are", force, when,
+          inside.depth, inside.count == 1 ? "it is" : "they are");
+    case Kind::Squeezed:
+      return fmt::format(
+          "\"{}\" presses nodes of \"{}\" against \"{}\" {}: the collider that they touched first "
+          "holds them, and the other one goes through them; leave room between the two",
+          force, surface, others.front(), when);
+    case Kind::PassesBetween:
+      return fmt::format(
+          "\"{}\" may pass between the nodes of \"{}\": {}; subdivide the mesh, or make the "
+          "collider larger",
+          force, surface, told);
   }
   return {};
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/body/state.hpp"
 #include "pliant/feedback/frame_ranges.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/scene.hpp"
@@ -38,14 +39,20 @@ struct Warning {
     RadiusUnused,    ///< a deformation radius where all of a surface is solved
     NeverMoves,      ///< inertia of a surface that stands still
     MapOutside,      ///< values of a map, and what it makes of them, outside 0 to 1
+    BeginsInside,    ///< nodes are inside a collider as it begins to act
+    HeldInside,      ///< nodes that do not move are inside a collider
+    Squeezed,        ///< a collider presses nodes against another one
+    PassesBetween,   ///< a collider is smaller than the distance of a surface's nodes
   };
   Kind kind = Kind::RegionTooSmall;
   std::string surface;  ///< empty: all, for a force that selects nothing on any surface
-  std::string force;    ///< or group; empty: the warning is about the surface itself
+  std::string force;    ///< group or collider; empty: the warning is about the surface itself
   FrameRanges frames;
-  std::vector<std::string> others = {};    ///< for ForcesApart: the forces besides `force`
+  /// For ForcesApart: the forces besides `force`; for Squeezed: the other collider.
+  std::vector<std::string> others = {};
   bool is_group = false;                   ///< whether `force` is the region of a group
   int faces = 0;                           ///< for FacesLeftOut
+  NodesInside inside = {};                 ///< for BeginsInside, HeldInside: the most, the deepest
   std::string left_out = {};               ///< for FileLeftOut: `Mesh::left_out`
   std::optional<CacheSummary> cache = {};  ///< for CacheOutside
   bool is_cache_late = false;              ///< whether the samples are after the scene's frames

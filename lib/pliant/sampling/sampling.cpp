@@ -208,17 +208,16 @@ ColliderPose sample_pose(const Collider& collider, int frame) {
 void sample_colliders(const Scene& scene, const SceneSampling& sampling, std::size_t index,
                       int frame, SurfaceInputs& inputs) {
   const Surface& surface = scene.surfaces[index];
-  inputs.colliders.clear();
   for (const std::size_t k : sampling.targets(index).colliders) {
     const Collider& collider = scene.colliders[k];
     if (!collider.enabled.at(frame)) continue;
     const bool selects = surface.solver.region == SolvedRegion::Forces;
     inputs.body.colliders.push_back({sample_pose(collider, frame), sample_pose(collider, frame + 1),
                                      selects ? collider.deformation_radius.at(frame)[0] : 0,
-                                     collider.friction.at(frame)[0], collider.stick.at(frame)});
-    inputs.colliders.push_back(k);
+                                     collider.friction.at(frame)[0], collider.stick.at(frame),
+                                     static_cast<int>(k)});
   }
-  if (inputs.colliders.empty()) return;
+  if (inputs.body.colliders.empty()) return;
   inputs.body.motion = {surface.transform.placement_at(frame),
                         surface.transform.placement_at(frame + 1)};
   const AnimatedShape* const animation = sampling.animation(index);
@@ -410,6 +409,11 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {},
           .shape = shape.now};
+}
+
+PlacedCollider placed_at(const Collider& collider, int frame) {
+  const ColliderPose pose = sample_pose(collider, frame);
+  return placed({pose, pose}, 0);
 }
 
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,

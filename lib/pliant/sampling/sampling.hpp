@@ -50,8 +50,7 @@ struct SurfaceInputs {
   std::vector<ForceSource> sources;     ///< of `body.forces`; the selector of a force in a group is
                                         ///< that of the group
   std::shared_ptr<ForceFaults> faults;  ///< shared by the custom forces
-  std::vector<std::size_t> colliders = {};  ///< of `body.colliders`: their indices in the scene
-  std::vector<int> group_selectors = {};    ///< reused to avoid allocations
+  std::vector<int> group_selectors = {};  ///< reused to avoid allocations
 };
 
 /// A clock for a noise with a keyed rate, in a scene that starts at `start`; null for any other
@@ -112,6 +111,9 @@ SampledForce sample_force(const Scene& scene, const Force& force, const Surface&
 /// The region of a group. An error of what carries it is added to `faults`.
 SampledForce sample_group(const Scene& scene, const Group& group, int frame, ForceFaults& faults,
                           const Carriers& carriers);
+
+/// A collider as it stands in the world at a frame.
+PlacedCollider placed_at(const Collider& collider, int frame);
 
 /// A force or group as it is in the world at a frame: one that follows nothing, with the places and
 /// directions that it has there; itself if it follows nothing. Where nothing can carry it, it stays

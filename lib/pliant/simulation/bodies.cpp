@@ -252,7 +252,7 @@ void Bodies::step(std::size_t index, int frame, SceneStates* states) {
     step.outcome = begin_cycle(index, states);
     return;
   }
-  if (!step.is_solved_now) return;
+  if (!step.is_solved_now) return body.touch_nothing();
   if (states) {
     const StageTimer timer(profile_of(index), Stage::Checkpoints);
     if (context_.is_stopped()) {
@@ -412,10 +412,11 @@ Result<FrameReport> Bodies::report(int frame, ReportDetail detail) {
   for_each_body([&](std::size_t k) {
     if (!is_solved_at(scene_, scene_.surfaces[k], frame)) {
       surfaces[k]->is_surface = !rest_shapes_[k].grid;
-      return;
+    } else {
+      surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame), detail);
+      if (surfaces[k]) surfaces[k]->frame = solved_frame(scene_, scene_.surfaces[k], frame);
     }
-    surfaces[k] = report_of(*bodies_[k], sample_inputs(scene_, sampling_, k, frame), detail);
-    if (surfaces[k]) surfaces[k]->frame = solved_frame(scene_, scene_.surfaces[k], frame);
+    if (surfaces[k]) surfaces[k]->contacts = bodies_[k]->state().contacts;
   });
   FrameReport report{frame, {}};
   for (std::size_t k = 0; k < bodies_.size(); ++k) {

@@ -115,6 +115,7 @@ Result<void> Simulation::Player::step() {
     is_read = is_read || step.is_read;
     if (!step.is_solved_now) continue;
     add_facts(warnings_, surface, frame_, step.inputs, step.facts);
+    add_contacts(warnings_, scene_, surface, frame_, bodies_.all()[k]->state().contacts);
     bodies_.look(watch_, k, frame_, warnings_);
     is_solved = is_solved || (!step.is_read && !step.is_again);
   }

@@ -1,5 +1,6 @@
 #include "pliant/states/scene_states.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <utility>
 
@@ -52,6 +53,22 @@ Hash SceneStates::sealing_key(std::size_t surface, int frame) {
   return known ? *known : unnamed_key(keys_[surface].rest());
 }
 
+// Whether facts are about colliders of the scene.
+bool SceneStates::knows(const std::vector<ContactFacts>& contacts) const {
+  const auto is_known = [&](int collider) {
+    return static_cast<std::size_t>(collider) < scene_.colliders.size();
+  };
+  return std::ranges::all_of(contacts, [&](const ContactFacts& facts) {
+    return is_known(facts.collider) && std::ranges::all_of(facts.squeezed, is_known);
+  });
+}
+
+std::optional<StoredState> SceneStates::stored(const Hash& key, const Body& body) const {
+  auto stored = read_stored(*store_, key, body.rest(), layout_of(body.state()));
+  if (stored && !knows(stored->state.contacts)) return {};
+  return stored;
+}
+
 std::optional<StoredState> SceneStates::read(std::size_t surface, int frame,
                                              const SurfaceInputs& inputs, const Body& body) {
   KeyChain& keys = keys_[surface];
@@ -59,7 +76,7 @@ std::optional<StoredState> SceneStates::read(std::size_t surface, int frame,
   if (!has_loop && keys.length() == frame + 1 - first_) keys.append(&inputs, frame);
   const std::optional<Hash>& after = key(surface, frame + 1);
   if (!after) return {};
-  auto stored = read_stored(*store_, *after, body.rest(), layout_of(body.state()));
+  auto stored = this->stored(*after, body);
   if (stored && stored->facts.forces.size() != inputs.body.forces.size()) return {};
   return stored;
 }
@@ -72,7 +89,7 @@ void SceneStates::write(std::size_t surface, int frame, const Body& body, const 
 std::optional<BodyState> SceneStates::cycle(std::size_t surface, const Body& body) {
   const std::optional<Hash>& key = key_in_cycle(surface, 0);
   if (!store_ || !key) return {};
-  auto stored = read_stored(*store_, *key, body.rest(), layout_of(body.state()));
+  auto stored = this->stored(*key, body);
   if (!stored) return {};
   return std::move(stored->state);
 }
@@ -94,8 +111,7 @@ std::optional<FrameStates> SceneStates::states_at(int frame,
       found.states.push_back(bodies[k]->rest_state());
       continue;
     }
-    auto stored =
-        read_stored(*store_, *key(k, frame), bodies[k]->rest(), layout_of(bodies[k]->state()));
+    auto stored = this->stored(*key(k, frame), *bodies[k]);
     if (!stored) return {};
     found.states.push_back(std::move(stored->state));
   }
@@ -140,7 +156,7 @@ Result<FrameStates> SceneStates::read_checkpoint(std::string_view bytes,
     if (!reader.is_sound()) return refuse("it is damaged");
     const Hash of_scene = sealing_key(k, found.frame);
     auto stored = from_bytes(state, of_scene, bodies[k]->rest(), layout_of(bodies[k]->state()));
-    if (!stored) {
+    if (!stored || !knows(stored->state.contacts)) {
       return refuse(fmt::format(
           "surface \"{}\", its channels or forces before frame {}, or the engine is not the same",
           scene_.surfaces[k].name, frame));

@@ -67,6 +67,8 @@ class SceneStates {
   const std::optional<Hash>& key(std::size_t surface, int frame);
   const std::optional<Hash>& key_in_cycle(std::size_t surface, int frame);
   void append_to(KeyChain& chain, std::size_t surface, int frame) const;
+  bool knows(const std::vector<ContactFacts>& contacts) const;
+  std::optional<StoredState> stored(const Hash& key, const Body& body) const;
   Hash sealing_key(std::size_t surface, int frame);
 
   const Scene& scene_;

@@ -177,8 +177,8 @@ class HashedValues {
     add_all(placement, offset);
   }
   void add(const SampledCollider& collider) {
-    const auto& [first, last, deformation_radius, friction, sticks] = collider;
-    add_all(first, last, deformation_radius, friction, int{sticks});
+    const auto& [first, last, deformation_radius, friction, sticks, index] = collider;
+    add_all(first, last, deformation_radius, friction, int{sticks}, index);
   }
   void add(const BodyMotion& motion) {
     const auto& [first, last, next_shape] = motion;

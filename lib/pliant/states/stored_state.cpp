@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "pliant/states/sealed_bytes.hpp"
@@ -12,7 +13,7 @@
 namespace pliant {
 namespace {
 
-constexpr std::string_view magic("pliant state 1\n\0", 16);
+constexpr std::string_view magic("pliant state 2\n\0", 16);
 
 // Nodes first, first + 1, ..., first + count - 1.
 struct Run {
@@ -90,6 +91,9 @@ ForceFacts facts_of(unsigned bits) {
   const auto bit = [bits](int place) { return (bits >> place & 1u) != 0; };
   return {bit(5), bit(7), bit(4), bit(3), bit(2), bit(1), bit(0), bit(6)};
 }
+
+// More than any scene has.
+constexpr std::uint64_t most_colliders = 1'000'000;
 
 using Numbers = std::array<double, 12>;
 
@@ -218,7 +222,72 @@ bool take_plastic(ByteReader& reader, Eigen::Index rows, PlasticField& plastic) 
   return plastic.allFinite();
 }
 
-constexpr std::size_t bytes_of_node = 9 * sizeof(double) + 1;
+void append_inside(std::string& bytes, const NodesInside& inside) {
+  append(bytes, static_cast<std::uint64_t>(inside.count));
+  append(bytes, &inside.depth, sizeof(double));
+}
+
+void append_contacts(std::string& bytes, const std::vector<ContactFacts>& contacts) {
+  append(bytes, std::uint64_t{contacts.size()});
+  for (const auto& [collider, nodes, force, touched, thrown, held, squeezed] : contacts) {
+    append(bytes, static_cast<std::uint64_t>(collider));
+    append(bytes, std::uint64_t{nodes.size()});
+    append(bytes, nodes.data(), nodes.size() * sizeof(int));
+    append(bytes, force.data(), 3 * sizeof(double));
+    append(bytes, std::uint64_t{touched});
+    append_inside(bytes, thrown);
+    append_inside(bytes, held);
+    append(bytes, std::uint64_t{squeezed.size()});
+    append(bytes, squeezed.data(), squeezed.size() * sizeof(int));
+  }
+}
+
+// False if it is not one of the first `count` numbers.
+bool take_index(ByteReader& reader, std::uint64_t count, int& index) {
+  const std::uint64_t number = reader.number();
+  index = static_cast<int>(number);
+  return number < count;
+}
+
+// False if the bytes are not those of ascending numbers below `end`.
+bool take_indices(ByteReader& reader, std::uint64_t end, std::vector<int>& indices) {
+  const std::uint64_t count = reader.number();
+  if (count > reader.left() / sizeof(int)) return false;
+  indices.resize(static_cast<std::size_t>(count));
+  reader.take(indices.data(), indices.size() * sizeof(int));
+  return std::ranges::adjacent_find(indices, std::greater_equal()) == indices.end() &&
+         (indices.empty() ||
+          (indices.front() >= 0 && static_cast<std::uint64_t>(indices.back()) < end));
+}
+
+bool take_inside(ByteReader& reader, std::uint64_t node_count, NodesInside& inside) {
+  const bool is_count = take_index(reader, node_count + 1, inside.count);
+  reader.take(&inside.depth, sizeof(double));
+  return is_count && std::isfinite(inside.depth);
+}
+
+// False if the bytes are not those of `append_contacts`.
+bool take_contacts(ByteReader& reader, std::uint64_t node_count,
+                   std::vector<ContactFacts>& contacts) {
+  const std::uint64_t count = reader.number();
+  for (std::uint64_t k = 0; k < count; ++k) {
+    auto& [collider, nodes, force, touched, thrown, held, squeezed] = contacts.emplace_back();
+    int flag = 0;
+    if (!take_index(reader, most_colliders, collider) || !take_indices(reader, node_count, nodes))
+      return false;
+    reader.take(force.data(), 3 * sizeof(double));
+    if (!force.allFinite() || !take_index(reader, 2, flag)) return false;
+    touched = flag != 0;
+    if (!take_inside(reader, node_count, thrown) || !take_inside(reader, node_count, held) ||
+        !take_indices(reader, most_colliders, squeezed) || !reader.is_sound()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// A node is pushed by at most three colliders.
+constexpr std::size_t bytes_of_node = 9 * sizeof(double) + 1 + 3 * sizeof(int);
 
 // The most bytes of a state besides its runs and nodes.
 std::size_t most_head(std::size_t force_count) {
@@ -229,7 +298,7 @@ std::size_t most_head(std::size_t force_count) {
 // An upper bound for the bytes of a state: in the worst case every other node is away from rest, or
 // all are.
 std::size_t most_bytes(Eigen::Index node_count, Eigen::Index plastic_count) {
-  constexpr std::size_t forces = 1'000'000;  // more than any scene has
+  constexpr std::size_t forces = 1'000'000;  // more than any scene has, with its colliders
   const auto nodes = static_cast<std::size_t>(node_count);
   const auto places = static_cast<std::size_t>(plastic_count);
   return most_head(forces) + (nodes + 1) / 2 * 2 * sizeof(Run) + nodes * bytes_of_node +
@@ -276,6 +345,7 @@ std::string to_bytes(const Hash& key, const BodyState& state, const StepFacts& f
   }
   if (layout.has_push) append_push(bytes, state.last);
   if (layout.plastic_places > 0) append_plastic(bytes, state.plastic);
+  append_contacts(bytes, state.contacts);
   append_seal(bytes);
   return bytes;
 }
@@ -315,6 +385,7 @@ std::optional<StoredState> from_bytes(std::string_view bytes, const Hash& key, c
   if (layout.has_push && !take_push(reader, node_count, state.last)) return {};
   if (layout.plastic_places > 0 && !take_plastic(reader, layout.plastic_places, state.plastic))
     return {};
+  if (!take_contacts(reader, node_count, state.contacts)) return {};
   if (!reader.is_sound() || reader.left() != 0) return {};
   if (!state.positions.allFinite() || !state.velocities.allFinite()) return {};
   return stored;
