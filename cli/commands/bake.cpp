@@ -31,21 +31,13 @@
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/pliant.hpp"
+#include "pliant/scene/collider_mesh.hpp"
 #include "pliant/scene/inputs.hpp"
 
 namespace pliant::cli {
 namespace {
 
 bool is_world(const BakeOptions& options) { return options.space == "world"; }
-
-Placement placement_at(const TransformChannels& transform, int frame) {
-  const auto vector = [&](const Channel<3>& channel) -> Vector3d {
-    const Value<3> value = channel.at(frame);
-    return {value[0], value[1], value[2]};
-  };
-  return {vector(transform.translate), vector(transform.rotate), vector(transform.scale),
-          transform.rotate_order};
-}
 
 // The surfaces to write, by their index in the scene.
 Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
@@ -75,7 +67,7 @@ Result<AnimationPlan> make_plan(const Simulation& simulation, const BakeOptions&
   for (const std::size_t k : chosen) {
     if (was_interrupted()) return interrupted();
     const RestShape& shape = simulation.rest_shapes()[k];
-    const Placement first = placement_at(scene.surfaces[k].transform, frames.first);
+    const Placement first = scene.surfaces[k].transform.placement_at(frames.first);
     const Transform transform = is_world(options) ? make_transform(first) : Transform();
     plan.surfaces.push_back({.name = shape.name,
                              .mesh = &shape.mesh,
@@ -95,7 +87,7 @@ void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan,
     const Surface& surface = scene.surfaces[chosen[loss.surface]];
     const Vector3d there = plan.is_placed
                                ? Vector3d(0, 0, 0)
-                               : placement_at(surface.transform, plan.first_frame).translate;
+                               : surface.transform.placement_at(plan.first_frame).translate;
     print_warning(scene.origin.place_of(name),
                   precision_text(fmt::format("\"{}\"", name), ending_of(plan.file), loss, there) +
                       (plan.is_placed ? "; with --space world" : ""));
@@ -145,6 +137,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
 struct Output {
   std::vector<std::size_t> surfaces;  // by their index in the scene
   std::unique_ptr<AnimationWriter> writer;
+  ColliderMeshes colliders = {};
   std::vector<SurfacePose> poses = {};  // of the surfaces, reused to avoid allocations
   Profile profile = {};                 // of the work in this file
 };
@@ -153,8 +146,12 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
                            const FrameSpan& frames) {
   const auto chosen = chosen_surfaces(simulation, options);
   if (!chosen) return fail(chosen.error());
-  const auto plan = make_plan(simulation, options, frames, *chosen);
+  auto plan = make_plan(simulation, options, frames, *chosen);
   if (!plan) return fail(plan.error());
+  ColliderMeshes colliders;
+  if (!options.omits_colliders)
+    colliders = ColliderMeshes(simulation.scene(), plan->surfaces, frames.first);
+  plan->colliders = colliders.surfaces();
   if (auto checked = check_overwrites(*plan, simulation.scene()); !checked)
     return fail(checked.error());
   if (auto free = check_regions_file(options, simulation.scene(), *plan); !free)
@@ -162,7 +159,7 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
   auto writer = make_writer(*plan);
   if (!writer) return fail(writer.error());
   warn_of_precision(simulation, *plan, *chosen);
-  return Output{*chosen, *std::move(writer)};
+  return Output{*chosen, *std::move(writer), std::move(colliders)};
 }
 
 // The content of the one-line summary.
@@ -196,12 +193,12 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
       pose.is_mirrored = surface.transform().is_mirrored();
     } else {
       pose.positions = surface.object_positions();
-      pose.placement = placement_at(scene.surfaces[k].transform, frame.number());
+      pose.placement = scene.surfaces[k].transform.placement_at(frame.number());
     }
   }
   posing.stop();
   const StageTimer writing(profile, Stage::Writing);
-  return output.writer->write(frame.number(), output.poses);
+  return output.writer->write(frame.number(), output.poses, output.colliders.at(frame.number()));
 }
 
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
@@ -311,6 +308,8 @@ void add_bake_options(CLI::App& command, BakeOptions& options) {
   command.add_option("--space", options.space, "Space of the positions")
       ->check(one_of({"world", "object"}))
       ->capture_default_str();
+  command.add_flag("--no-colliders", options.omits_colliders,
+                   "Leave colliders out of .glb, .gltf and .usda");
   command.add_flag(
       "--resume", options.resume,
       "Keep the files of an .obj or .ply sequence that are already identical to the result");

@@ -23,6 +23,7 @@ struct BakeOptions {
   std::string solver = "auto";
   bool resume = false;
   bool is_quiet = false;
+  bool omits_colliders = false;
   bool is_profiled = false;
   bool checks_dt = false;
   Root root = {};

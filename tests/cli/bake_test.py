@@ -1,11 +1,13 @@
 """`pliant bake`: its output files, resuming, and the output of --regions."""
 
 import contextlib
+import json
 import os
 import pty
 import re
 import resource
 import signal
+import struct
 import subprocess
 import sys
 import unittest
@@ -60,6 +62,40 @@ class Bake(Command):
         world = np.load(self.path("one.npy"))
         self.assertTrue((world == np.load(self.path("a-other.npy"))).all())
         self.assertTrue((world - np.load(self.path("object.npy")) == [0, 7, 0]).all())
+
+    def test_colliders_are_nodes_beside_the_surfaces_they_meet(self):
+        def nodes(file):
+            with open(self.path(file), "rb") as data:
+                head = data.read(20)
+                return json.loads(data.read(struct.unpack("<I", head[12:16])[0]))["nodes"]
+
+        def content(file):
+            with open(self.path(file), "rb") as data:
+                return data.read()
+
+        colliders = ('<collider name="ball" targets="sheet"><sphere/><transform translate="0 9 0"/></collider>'
+                     '<collider name="floor"><plane/><transform translate="0 -9 0"/></collider>')
+        other = '<surface name="other"><grid columns="3" rows="3"/><transform translate="0 7 0"/></surface>'
+        plain = self.write("plain.xml", SCENE.format(end=3).replace("<point", other + "<point"))
+        scene = self.write("met.xml", SCENE.format(end=3).replace("<point", other + colliders + "<point"))
+        for out in ("a.glb", "a.gltf", "a.usda", "a.npy"):
+            self.bake(plain, "-o", self.path("plain" + out))
+            self.bake(scene, "-o", self.path(out))
+            self.bake(scene, "-o", self.path("again" + out))
+            self.bake(scene, "-o", self.path("none" + out), "--no-colliders")
+            files = [out] if out != "a.npy" else ["a-sheet.npy", "a-other.npy"]
+            for file in files:
+                if out == "a.gltf":  # the numbers' name has that of the file
+                    continue
+                self.assertEqual(content(file), content("again" + file))
+                self.assertEqual(content("none" + file), content("plain" + file))
+                self.assertEqual(content(file) == content("none" + file), out == "a.npy")
+        self.assertEqual([node["name"] for node in nodes("a.glb")], ["sheet", "other", "ball"])
+        self.assertEqual(nodes("a.glb")[2]["translation"], [0, 9, 0])
+        self.assertEqual(len(nodes("nonea.glb")), 2)
+        for surface, count in (("sheet", 2), ("other", 1)):
+            self.bake(scene, "-o", self.path("one.glb"), "--surface", surface)
+            self.assertEqual(len(nodes("one.glb")), count)
 
     def test_the_same_bits_twice(self):
         scene = self.scene()

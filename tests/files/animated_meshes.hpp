@@ -46,6 +46,26 @@ inline Result<void> write_all(AnimationPlan plan, const std::vector<std::vector<
   return (*writer)->finish();
 }
 
+/// Frames 1 to 4 of a still sheet and a collider that goes, grows, turns, and is hidden at frame 3;
+/// `points` are those of frame k + 1.
+inline Result<void> write_collider(AnimationPlan plan, const Mesh& solid,
+                                   const std::vector<Field>& points) {
+  plan.colliders = {{"ball-1", &solid, solid.positions}};
+  plan.first_frame = 1;
+  plan.last_frame = 4;
+  auto writer = make_writer(plan);
+  if (!writer) return fail(writer.error());
+  for (int frame = 1; frame <= 4; ++frame) {
+    const SurfacePose sheet{plan.surfaces[0].rest};
+    const SurfacePose ball{
+        .positions = points[static_cast<std::size_t>(frame - 1)],
+        .placement = {{1.0 * frame, 2, 3}, {0, 30.0 * frame, 0}, {1.0 * frame, 1, 1}},
+        .is_shown = frame != 3};
+    if (auto written = (*writer)->write(frame, {&sheet, 1}, {&ball, 1}); !written) return written;
+  }
+  return (*writer)->finish();
+}
+
 inline AnimationPlan plan_of(const std::filesystem::path& file, const Mesh& mesh) {
   return {.file = file, .surfaces = {{"sheet", &mesh, mesh.positions}}};
 }

@@ -43,16 +43,18 @@ inline constexpr int most_gltf_frames = 8192;
 /// after its numbers are in place; then number files that no .gltf of the folder refers to any more
 /// are removed.
 ///
-/// A node, a mesh and an animation channel for each surface. The mesh is the surface at rest. Each
-/// frame that differs from the one before is a morph target, with sparse offsets if they are
-/// smaller; it has weight 1 at its time and 0 at those of all others. Between frames the weights
-/// are linear, and so is the shape. Base and offsets are single precision: the error of their sum
-/// is at most half a unit in the last place of the position plus that of the offset. Times are in
-/// seconds from the first frame.
+/// A node, a mesh and an animation channel for each surface, then for each collider. The mesh is
+/// the surface at rest. Each frame that differs from the one before is a morph target, with sparse
+/// offsets if they are smaller; it has weight 1 at its time and 0 at those of all others. Between
+/// frames the weights are linear, and so is the shape. Base and offsets are single precision: the
+/// error of their sum is at most half a unit in the last place of the position plus that of the
+/// offset. Times are in seconds from the first frame.
 ///
 /// Faces are split into triangles. The vertices of the mesh come first, in its order, followed by
 /// those that a seam of (u,v) or a hard edge splits off. v points downwards in glTF: it is 1 - v.
-/// If poses are placed, nodes have translation, rotation and scale, animated if they change.
+/// If poses are placed, nodes have translation, rotation and scale, animated if they change. Those
+/// of colliders always have; one that is not shown has a scale of 0, and if that changes its scales
+/// are steps.
 ///
 /// Errors: InvalidInput for more than `most_gltf_frames`; Unwritable, also for a `.glb` that
 /// exceeds the 4 GiB limit of its header; NotFinite beyond single precision.
@@ -67,7 +69,8 @@ Result<std::unique_ptr<AnimationWriter>> make_gltf_writer(const AnimationPlan& p
 /// at the last frame it is that of the frame before, and it is omitted if there is only one frame.
 /// Normals are `vertex`, or `faceVarying` if the mesh defines which corners share one. (u,v) are
 /// `primvars:st`, faces stay polygons, materials and groups are GeomSubsets. If poses are placed,
-/// transforms are xformOps, sampled if they change.
+/// transforms are xformOps, sampled if they change. Colliders follow, always placed: their points,
+/// extent and normals have samples only where they change, and they have a visibility.
 ///
 /// A `-` in the name of a surface becomes `_`, since USD does not allow it in names, with a number
 /// added if two names would be equal; `displayName` has the original name. The file stores all

@@ -38,11 +38,10 @@ Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
 }
 
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
-                             std::string_view surface, int frame) {
+                             std::string_view thing, int frame) {
   const auto refused = [&](const char* attribute, double number, const char* reason) {
-    return fail(ErrorCode::NotFinite,
-                fmt::format("surface \"{}\" at frame {} has a {} of {}, which is {}", surface,
-                            frame, attribute, number, reason));
+    return fail(ErrorCode::NotFinite, fmt::format("{} at frame {} has a {} of {}, which is {}",
+                                                  thing, frame, attribute, number, reason));
   };
   const auto check = [&](const char* attribute, const Vector3d& vector,
                          bool is_single) -> Result<void> {

@@ -21,11 +21,11 @@ Result<void> to_single(const Field& positions, int frame, Eigen::Index first,
 /// How a format stores translation and scale of a placement.
 enum class PlacementNumbers { Single, Double };
 
-/// Whether a format can store a placement. Errors: NotFinite, naming surface, frame and value, if
+/// Whether a format can store a placement. Errors: NotFinite, naming the thing, frame and value, if
 /// one of its numbers is not finite or beyond the range of the format's numbers, or a scale is too
 /// small for them: a scale of 0 cannot be inverted.
 Result<void> check_placement(const Placement& placement, PlacementNumbers numbers,
-                             std::string_view surface, int frame);
+                             std::string_view thing, int frame);
 
 /// Seconds from the first to the last of `frame_count` frames, rounded to float. Errors: NotFinite
 /// if that is out of range.

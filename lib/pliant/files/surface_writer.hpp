@@ -18,6 +18,8 @@ struct SurfacePose {
   /// Whether the transform that gave the positions reflects (`Transform::is_mirrored`): then the
   /// faces are written turned round, so that they keep their outer sides.
   bool is_mirrored = false;
+
+  bool is_shown = true;  ///< surfaces always are, colliders while they are enabled
 };
 
 /// Number of files of a sequence that were already correct, and of those written.

@@ -69,7 +69,8 @@ class SurfaceBySurface final : public AnimationWriter {
   explicit SurfaceBySurface(std::vector<std::unique_ptr<SurfaceWriter>> writers)
       : writers_(std::move(writers)) {}
 
-  Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces,
+                     std::span<const SurfacePose>) override {
     PLIANT_EXPECTS(surfaces.size() == writers_.size());
     for (std::size_t k = 0; k < writers_.size(); ++k) {
       if (auto written = writers_[k]->write(frame, surfaces[k]); !written) return written;

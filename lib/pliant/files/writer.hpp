@@ -23,9 +23,14 @@ class AnimationWriter {
   AnimationWriter& operator=(const AnimationWriter&) = delete;
   virtual ~AnimationWriter() = default;
 
-  /// The surfaces at the next frame, in the order of the plan. Errors: Unwritable; NotFinite if the
-  /// format has only single precision and a coordinate is out of range; Interrupted.
-  virtual Result<void> write(int frame, std::span<const SurfacePose> surfaces) = 0;
+  /// The surfaces and colliders at the next frame, in the order of the plan. Errors: Unwritable;
+  /// NotFinite if the format has only single precision and a coordinate is out of range;
+  /// Interrupted.
+  virtual Result<void> write(int frame, std::span<const SurfacePose> surfaces,
+                             std::span<const SurfacePose> colliders) = 0;
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces) {
+    return write(frame, surfaces, {});
+  }
 
   /// Gives the result its name. Errors: Unwritable; Interrupted. Requires: every frame has been
   /// written.
@@ -50,6 +55,8 @@ struct AnimatedSurface {
 struct AnimationPlan {
   std::string file;  ///< its ending determines the format
   std::vector<AnimatedSurface> surfaces = {};
+  /// Solids beside them, always placed; only `.glb`, `.gltf` and `.usda` contain them.
+  std::vector<AnimatedSurface> colliders = {};
   int first_frame = 0;
   int last_frame = 0;
   double fps = 24;               ///< [1/s]
@@ -95,7 +102,7 @@ bool is_named_at_the_end(const AnimationPlan& plan, std::string_view name);
 /// format of one file, and as `check_output_place` for each of its files; Unwritable; Interrupted.
 /// Requires: at
 /// least one surface; any format accepts poses in object space, but only `.glb`, `.gltf` and
-/// `.usda` accept placements.
+/// `.usda` accept placements of surfaces.
 Result<std::unique_ptr<AnimationWriter>> make_writer(const AnimationPlan& plan);
 
 }  // namespace pliant

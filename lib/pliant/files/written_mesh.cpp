@@ -1,6 +1,12 @@
 #include "pliant/files/written_mesh.hpp"
 
+#include <fmt/format.h>
+
 namespace pliant {
+
+std::string told_as(WrittenAs as, const std::string& name) {
+  return fmt::format("{} \"{}\"", as == WrittenAs::Collider ? "collider" : "surface", name);
+}
 
 const Mesh& WrittenMesh::in_space(bool is_mirrored) {
   if (!is_mirrored) return *mesh_;

@@ -1,10 +1,24 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
+
+// How a mesh is written. Internal to output.
+enum class WrittenAs {
+  Surface,        // its positions are in the world
+  PlacedSurface,  // they are in object space
+  Collider,       // likewise, and mostly do not change
+};
+
+/// Of the material of colliders: red, green and blue, linear.
+inline constexpr double collider_grey = 0.25;
+
+/// It in a message: `surface "mat"`.
+std::string told_as(WrittenAs as, const std::string& name);
 
 // A mesh in the spaces that it is written in. Internal to output.
 class WrittenMesh {

@@ -15,6 +15,7 @@
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/files/writer.hpp"
 #include "pliant/sampling/sampling.hpp"
+#include "pliant/scene/collider_mesh.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/sweep/sweep.hpp"
 
@@ -45,9 +46,11 @@ class TakeWriter {
                                .rest = to_world(transform, shape.mesh.positions),
                                .is_mirrored = transform.is_mirrored()});
     }
+    ColliderMeshes colliders(scene, plan.surfaces, frames.first);
+    plan.colliders = colliders.surfaces();
     auto writer = make_writer(plan);
     if (!writer) return fail(writer.error());
-    return TakeWriter(*std::move(writer), scene.surfaces.size());
+    return TakeWriter(*std::move(writer), std::move(colliders), scene.surfaces.size());
   }
 
   Result<void> write(const Frame& frame) {
@@ -56,16 +59,18 @@ class TakeWriter {
       poses_[k].positions = surface.positions(std::move(poses_[k].positions));
       poses_[k].is_mirrored = surface.transform().is_mirrored();
     }
-    return writer_->write(frame.number(), poses_);
+    return writer_->write(frame.number(), poses_, colliders_.at(frame.number()));
   }
 
   Result<void> finish() { return writer_->finish(); }
 
  private:
-  TakeWriter(std::unique_ptr<AnimationWriter> writer, std::size_t surface_count)
-      : writer_(std::move(writer)), poses_(surface_count) {}
+  TakeWriter(std::unique_ptr<AnimationWriter> writer, ColliderMeshes colliders,
+             std::size_t surface_count)
+      : writer_(std::move(writer)), colliders_(std::move(colliders)), poses_(surface_count) {}
 
   std::unique_ptr<AnimationWriter> writer_;
+  ColliderMeshes colliders_;
   std::vector<SurfacePose> poses_;
 };
 

@@ -16,6 +16,7 @@
 #include "pliant/files/boxed/read_assimp.hpp"
 #include "pliant/files/formats.hpp"
 #include "pliant/files/read_file.hpp"
+#include "pliant/mesh/solid_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"
@@ -269,6 +270,65 @@ TEST_CASE("a placed surface is a node that moves", "[output][gltf]") {
       CHECK(dot >= 0);
     }
   }
+}
+
+TEST_CASE("a collider is a node that moves, hidden by a scale of 0", "[output][gltf]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({}), solid = make_ball_mesh(1).mesh;
+  REQUIRE(write_all(plan_of(folder.file("none.glb"), mesh), {{mesh.positions, mesh.positions}}));
+  const Field grown = 1.5 * solid.positions;
+  const bool grows = GENERATE(false, true);
+  const Field& last = grows ? grown : solid.positions;
+  REQUIRE(write_collider(plan_of(folder.file("a.glb"), mesh), solid,
+                         {solid.positions, solid.positions, last, last}));
+  const WrittenGltf none(folder.file("none.glb")), gltf(folder.file("a.glb"));
+  CHECK_FALSE(none.root.contains("animations"));
+  CHECK(gltf.root["nodes"][0] == none.root["nodes"][0]);
+  CHECK(gltf.root["meshes"][0] == none.root["meshes"][0]);
+  CHECK(gltf.root["nodes"].size() == 2);
+  CHECK(gltf.root["nodes"][1]["name"] == "ball-1");
+  const json& mesh_of_ball = gltf.root["meshes"][1];
+  const json& material =
+      gltf.root["materials"][mesh_of_ball["primitives"][0]["material"].get<std::size_t>()];
+  CHECK(material["name"] == "collider");
+  CHECK(material["pbrMetallicRoughness"].contains("baseColorFactor"));
+  CHECK(mesh_of_ball["primitives"][0].contains("targets") == grows);
+  const json& animation = gltf.root["animations"][0];
+  const auto channel = [&](const std::string& path) {
+    for (const json& each : animation["channels"]) {
+      if (each["target"]["path"] != path) continue;
+      CHECK(each["target"]["node"] == 1);
+      return animation["samplers"][each["sampler"].get<std::size_t>()];
+    }
+    FAIL(path);
+    return json();
+  };
+  CHECK(gltf.floats(channel("translation")["output"]) ==
+        std::vector<float>{1, 2, 3, 2, 2, 3, 3, 2, 3, 4, 2, 3});
+  CHECK(gltf.floats(channel("scale")["output"]) ==
+        std::vector<float>{1, 1, 1, 2, 1, 1, 0, 0, 0, 4, 1, 1});
+  CHECK(channel("scale")["interpolation"] == "STEP");  // it does not shrink to be hidden
+  CHECK(channel("translation")["interpolation"] == "LINEAR");
+  if (grows) CHECK(gltf.floats(channel("weights")["output"]) == std::vector<float>{0, 0, 1, 1});
+}
+
+TEST_CASE("formats of one surface do not write colliders", "[output]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({}), solid = make_ball_mesh(1).mesh;
+  for (const char* name : {"a.npy", "a.obj", "a.ply", "a.pc2", "a.mdd"}) {
+    REQUIRE(write_all(plan_of(folder.file(std::string("none") + name), mesh),
+                      {{mesh.positions, mesh.positions, mesh.positions, mesh.positions}}));
+    REQUIRE(write_collider(plan_of(folder.file(name), mesh), solid,
+                           std::vector<Field>(4, solid.positions)));
+  }
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder.file(""))) {
+    const std::string name = entry.path().filename().string();
+    if (name.substr(0, 1) != "a") continue;
+    ++files;
+    CHECK(read_file(entry.path()).value() == read_file(folder.file("none" + name)).value());
+  }
+  CHECK(files > 5);
 }
 
 TEST_CASE("what glTF cannot hold is refused ahead", "[output][gltf]") {

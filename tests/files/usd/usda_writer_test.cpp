@@ -5,6 +5,7 @@
 #include "pliant/files/formats.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/files/usd/usda_names.hpp"
+#include "pliant/mesh/solid_mesh.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -124,4 +125,33 @@ TEST_CASE("a placed surface has its transform in USD", "[output][usda]") {
   CHECK_THAT(text, contains_text("double3 xformOp:rotateYZX = (4, 5, 6)\n"));
   CHECK_THAT(text, contains_text("xformOpOrder = [\"xformOp:translate\", \"xformOp:rotateYZX\", "
                                  "\"xformOp:scale\"]"));
+}
+
+TEST_CASE("a collider has samples in USD only where it changes", "[output][usda]") {
+  const ScratchFolder folder;
+  const Mesh mesh = make_mesh({}), solid = make_ball_mesh(1).mesh;
+  const Field grown = 1.5 * solid.positions;
+  const AnimationPlan plan = plan_of(folder.file("a.usda"), mesh);
+  REQUIRE(write_collider(plan, solid, {solid.positions, solid.positions, solid.positions, grown}));
+  const std::string all = read_file(folder.file("a.usda")).value();
+  REQUIRE(all.find("def Mesh \"ball_1\"") != std::string::npos);
+  const std::string text = all.substr(all.find("def Mesh \"ball_1\""));
+  CHECK_THAT(text, contains_text("displayName = \"ball-1\""));
+  CHECK_THAT(text, contains_text("rel material:binding = </scene/materials/collider>"));
+  CHECK(text.find("velocities") == std::string::npos);
+  for (int frame = 1; frame <= 4; ++frame) {
+    CHECK(sample(text, "xformOp:translate", frame) == std::vector{1.0 * frame, 2.0, 3.0});
+    CHECK(sample(text, "xformOp:scale", frame) == std::vector{1.0 * frame, 1.0, 1.0});
+    CHECK_THAT(text, contains_text(std::to_string(frame) +
+                                   (frame == 3 ? ": \"invisible\"" : ": \"inherited\"")));
+  }
+  // The frame before a change keeps what was.
+  const std::string points = text.substr(text.find("points.timeSamples"),
+                                         text.find("normals (") - text.find("points.timeSamples"));
+  CHECK(points.find("            2: ") == std::string::npos);
+  for (const auto& [frame, size] : {std::pair(1, 1.0), {3, 1.0}, {4, 1.5}}) {
+    const auto extent = sample(text, "extent", frame);
+    CHECK(extent == std::vector{-size, -size, -size, size, size, size});
+    CHECK(sample(text, "points", frame).size() == 3 * static_cast<std::size_t>(grown.rows()));
+  }
 }

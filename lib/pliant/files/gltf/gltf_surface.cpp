@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <span>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -85,17 +87,17 @@ bool GltfKeys::is_moving() const {
   return false;
 }
 
-GltfSurface::GltfSurface(const AnimatedSurface& surface, bool is_placed, StopRequest should_stop)
+GltfSurface::GltfSurface(const AnimatedSurface& surface, WrittenAs as, StopRequest should_stop)
     : name_(surface.name),
       written_(*surface.mesh),
       mesh_(written_.in_space(surface.is_mirrored)),
-      is_placed_(is_placed),
+      as_(as),
       should_stop_(std::move(should_stop)),
       keys_{{"translation", 3}, {"rotation", 4}, {"scale", 3}} {}
 
-Result<GltfSurface> GltfSurface::make(const AnimatedSurface& surface, bool is_placed,
+Result<GltfSurface> GltfSurface::make(const AnimatedSurface& surface, WrittenAs as,
                                       const StopRequest& should_stop) {
-  GltfSurface made(surface, is_placed, should_stop);
+  GltfSurface made(surface, as, should_stop);
   auto shape = make_gltf_shape(made.mesh_, should_stop);
   if (!shape) return fail(shape.error());
   made.shape_ = *std::move(shape);
@@ -147,12 +149,14 @@ Result<std::vector<float>> GltfSurface::normals_at(const Field& positions) const
 }
 
 Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& buffer) {
-  if (is_placed_) {
-    auto held = check_placement(pose.placement, PlacementNumbers::Single, name_, frame);
+  if (is_placed()) {
+    auto held =
+        check_placement(pose.placement, PlacementNumbers::Single, told_as(as_, name_), frame);
     if (!held) return held;
     append(pose.placement.translate, keys_[0].numbers);
     append(rotation_of(pose.placement), keys_[1].numbers);
-    append(pose.placement.scale, keys_[2].numbers);
+    append(pose.is_shown ? pose.placement.scale : Vector3d(0, 0, 0), keys_[2].numbers);
+    is_shown_.push_back(pose.is_shown);
   }
   // Offset from the base as written to the double position: the sum of base and offset is then as
   // accurate as an offset in single precision allows. It is 0 if the position rounds to the base;
@@ -196,7 +200,8 @@ Result<void> GltfSurface::add(const SurfacePose& pose, int frame, GltfBuffer& bu
   return {};
 }
 
-Json GltfSurface::mesh(const std::function<std::size_t(const std::string&)>& material_of) const {
+Json GltfSurface::mesh(const std::function<std::size_t(const std::string*)>& material_of) const {
+  const std::string unnamed;
   Json targets = Json::array(), names = Json::array();
   for (const Target& target : targets_) {
     targets.push_back({{"POSITION", target.positions}, {"NORMAL", target.normals}});
@@ -205,12 +210,11 @@ Json GltfSurface::mesh(const std::function<std::size_t(const std::string&)>& mat
   Json primitives = Json::array();
   for (std::size_t k = 0; k < shape_.primitives.size(); ++k) {
     const int material = shape_.primitives[k].material;
-    Json primitive = {
-        {"attributes", attributes_},
-        {"indices", indices_[k]},
-        {"material",
-         material_of(material < 0 ? std::string()
-                                  : mesh_.materials.names[static_cast<std::size_t>(material)])}};
+    const std::string& name =
+        material < 0 ? unnamed : mesh_.materials.names[static_cast<std::size_t>(material)];
+    Json primitive = {{"attributes", attributes_},
+                      {"indices", indices_[k]},
+                      {"material", material_of(as_ == WrittenAs::Collider ? nullptr : &name)}};
     if (!targets_.empty()) primitive["targets"] = targets;
     primitives.push_back(std::move(primitive));
   }
@@ -223,7 +227,7 @@ Json GltfSurface::mesh(const std::function<std::size_t(const std::string&)>& mat
 Json GltfSurface::node(std::size_t mesh_index) const {
   Json node = {{"name", name_}, {"mesh", mesh_index}};
   for (const GltfKeys& keys : keys_) {
-    if (is_placed_) {
+    if (is_placed()) {
       node[keys.path] =
           std::vector<double>(keys.numbers.begin(), keys.numbers.begin() + keys.width);
     }
@@ -238,11 +242,16 @@ bool GltfSurface::is_animated() const {
 
 Result<void> GltfSurface::animate(std::size_t node_index, std::size_t times, GltfBuffer& buffer,
                                   Json& animation) const {
-  const auto add_channel = [&](const char* path, std::size_t values) {
+  // A scale of 0 hides. It must not be gone to by shrinking.
+  const bool is_switched =
+      std::ranges::adjacent_find(is_shown_, std::not_equal_to<>()) != is_shown_.end();
+  const auto add_channel = [&](std::string_view path, std::size_t values) {
     animation["channels"].push_back({{"sampler", animation["samplers"].size()},
                                      {"target", {{"node", node_index}, {"path", path}}}});
     animation["samplers"].push_back(
-        {{"input", times}, {"output", values}, {"interpolation", "LINEAR"}});
+        {{"input", times},
+         {"output", values},
+         {"interpolation", is_switched && path == "scale" ? "STEP" : "LINEAR"}});
   };
   if (!targets_.empty()) {
     const auto weights = buffer.add_weights(target_of_frame_, static_cast<int>(targets_.size()));

@@ -20,14 +20,14 @@ struct GltfKeys {
   bool is_moving() const;
 };
 
-// One surface of a glTF file: writes its static parts first, then a morph target for each frame
-// with a new shape. Internal to files.
+// One surface or collider of a glTF file: writes its static parts first, then a morph target for
+// each frame with a new shape. Internal to files.
 class GltfSurface {
  public:
   using Json = GltfBuffer::Json;
 
   /// Errors: Interrupted.
-  static Result<GltfSurface> make(const AnimatedSurface& surface, bool is_placed,
+  static Result<GltfSurface> make(const AnimatedSurface& surface, WrittenAs as,
                                   const StopRequest& should_stop);
 
   /// Writes the static parts. Errors: those of the buffer; NotFinite.
@@ -36,8 +36,9 @@ class GltfSurface {
   /// Writes one frame. Errors: likewise.
   Result<void> add(const SurfacePose& pose, int frame, GltfBuffer& buffer);
 
-  /// The mesh; `material_of` returns the index of a material by its name; empty: the unnamed one.
-  Json mesh(const std::function<std::size_t(const std::string&)>& material_of) const;
+  /// The mesh; `material_of` returns the index of a material by its name; empty: the unnamed one;
+  /// null: that of colliders.
+  Json mesh(const std::function<std::size_t(const std::string*)>& material_of) const;
 
   Json node(std::size_t mesh_index) const;
 
@@ -54,13 +55,14 @@ class GltfSurface {
     std::size_t positions, normals;  // accessors
   };
 
-  GltfSurface(const AnimatedSurface& surface, bool is_placed, StopRequest should_stop);
+  GltfSurface(const AnimatedSurface& surface, WrittenAs as, StopRequest should_stop);
+  bool is_placed() const { return as_ != WrittenAs::Surface; }
   Result<std::vector<float>> normals_at(const Field& positions) const;
 
   std::string name_;
   WrittenMesh written_;
   const Mesh& mesh_;
-  bool is_placed_;
+  WrittenAs as_;
   StopRequest should_stop_;
   GltfShape shape_;
   Json attributes_;
@@ -69,7 +71,8 @@ class GltfSurface {
   std::vector<Target> targets_;
   std::map<std::string, int> target_of_shape_;  // by the hash of its numbers
   std::vector<int> target_of_frame_;
-  std::vector<GltfKeys> keys_;  // of a placed surface
+  std::vector<GltfKeys> keys_;       // of what is placed
+  std::vector<bool> is_shown_ = {};  // at each frame
 };
 
 }  // namespace pliant

@@ -39,31 +39,40 @@ std::string to_uri(const std::string& name) {
   return uri;
 }
 
-// The materials named by faces, and one without a name for faces without one. Sheets are visible
-// from both sides.
+// The materials named by faces, one without a name for faces without one, and that of colliders.
+// Sheets are visible from both sides.
 class Materials {
  public:
-  std::size_t index_of(const std::string& name) {
-    const auto [place, is_new] = numbers_.try_emplace(name, names_.size());
-    if (is_new) names_.push_back(name);
+  /// Null: that of colliders.
+  std::size_t index_of(const std::string* name) {
+    const auto [place, is_new] =
+        numbers_.try_emplace({name == nullptr, name ? *name : "collider"}, keys_.size());
+    if (is_new) keys_.push_back(place->first);
     return place->second;
   }
 
   Json json() const {
     Json materials = Json::array();
-    for (const std::string& name : names_) {
+    for (const auto& [is_collider, name] : keys_) {
       Json material = Json::object();
       if (!name.empty()) material["name"] = name;
       material["pbrMetallicRoughness"] = {{"metallicFactor", 0}, {"roughnessFactor", 0.7}};
-      material["doubleSided"] = true;
+      if (is_collider) {
+        material["pbrMetallicRoughness"]["baseColorFactor"] = {collider_grey, collider_grey,
+                                                               collider_grey, 1};
+      } else {
+        material["doubleSided"] = true;
+      }
       materials.push_back(std::move(material));
     }
     return materials;
   }
 
  private:
-  std::vector<std::string> names_;
-  std::map<std::string, std::size_t> numbers_;  // of the names
+  using Key = std::pair<bool, std::string>;  // whether it is that of colliders, and its name
+
+  std::vector<Key> keys_;
+  std::map<Key, std::size_t> numbers_;
 };
 
 class GltfWriter final : public AnimationWriter {
@@ -71,7 +80,6 @@ class GltfWriter final : public AnimationWriter {
   GltfWriter(const AnimationPlan& plan, std::optional<AtomicFile> separate,
              std::optional<SpoolFile> spool)
       : file_(plan.file),
-        is_placed_(plan.is_placed),
         separate_(std::move(separate)),
         spool_(std::move(spool)),
         should_stop_(plan.should_stop),
@@ -85,20 +93,30 @@ class GltfWriter final : public AnimationWriter {
   }
 
   Result<void> begin(const AnimationPlan& plan) {
-    for (const AnimatedSurface& surface : plan.surfaces) {
-      auto made = GltfSurface::make(surface, is_placed_, should_stop_);
+    const auto add = [&](const AnimatedSurface& surface, WrittenAs as) -> Result<void> {
+      auto made = GltfSurface::make(surface, as, should_stop_);
       if (!made) return fail(made.error());
-      surfaces_.push_back(*std::move(made));
-      if (auto begun = surfaces_.back().begin(surface.rest, plan.first_frame, buffer_); !begun)
-        return begun;
+      things_.push_back(*std::move(made));
+      return things_.back().begin(surface.rest, plan.first_frame, buffer_);
+    };
+    for (const AnimatedSurface& surface : plan.surfaces) {
+      auto added = add(surface, plan.is_placed ? WrittenAs::PlacedSurface : WrittenAs::Surface);
+      if (!added) return added;
+    }
+    surface_count_ = things_.size();
+    for (const AnimatedSurface& collider : plan.colliders) {
+      if (auto added = add(collider, WrittenAs::Collider); !added) return added;
     }
     return {};
   }
 
-  Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
-    PLIANT_EXPECTS(surfaces.size() == surfaces_.size());
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-      if (auto added = surfaces_[k].add(surfaces[k], frame, buffer_); !added) return added;
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces,
+                     std::span<const SurfacePose> colliders) override {
+    PLIANT_EXPECTS(surfaces.size() == surface_count_ &&
+                   surfaces.size() + colliders.size() == things_.size());
+    for (std::size_t k = 0; k < things_.size(); ++k) {
+      const SurfacePose& pose = k < surface_count_ ? surfaces[k] : colliders[k - surface_count_];
+      if (auto added = things_[k].add(pose, frame, buffer_); !added) return added;
     }
     return {};
   }
@@ -133,14 +151,14 @@ class GltfWriter final : public AnimationWriter {
     Json scene = {{"nodes", Json::array()}};
     Json nodes = Json::array(), meshes = Json::array();
     Materials materials;
-    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
+    for (std::size_t k = 0; k < things_.size(); ++k) {
       scene["nodes"].push_back(k);
-      nodes.push_back(surfaces_[k].node(k));
+      nodes.push_back(things_[k].node(k));
       meshes.push_back(
-          surfaces_[k].mesh([&](const std::string& name) { return materials.index_of(name); }));
+          things_[k].mesh([&](const std::string* name) { return materials.index_of(name); }));
     }
     const bool is_animated =
-        std::any_of(surfaces_.begin(), surfaces_.end(),
+        std::any_of(things_.begin(), things_.end(),
                     [](const GltfSurface& surface) { return surface.is_animated(); });
     if (is_animated) {
       auto animation = make_animation();
@@ -163,8 +181,8 @@ class GltfWriter final : public AnimationWriter {
     Json animation = {{"name", "bake"}, {"channels", Json::array()}, {"samplers", Json::array()}};
     const auto times = buffer_.add_keys(times_, 1, GltfBuffer::Bounds::Written);
     if (!times) return fail(times.error());
-    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-      if (auto animated = surfaces_[k].animate(k, *times, buffer_, animation); !animated)
+    for (std::size_t k = 0; k < things_.size(); ++k) {
+      if (auto animated = things_[k].animate(k, *times, buffer_, animation); !animated)
         return fail(animated.error());
     }
     return animation;
@@ -206,13 +224,13 @@ class GltfWriter final : public AnimationWriter {
   }
 
   std::filesystem::path file_;
-  bool is_placed_;
   std::optional<AtomicFile> separate_;  // the numbers of a .gltf
   HashStream separate_hash_;            // of the bytes in `separate_`
   std::optional<SpoolFile> spool_;      // the numbers of a .glb until they can be written
   StopRequest should_stop_;
   GltfBuffer buffer_;
-  std::vector<GltfSurface> surfaces_;
+  std::vector<GltfSurface> things_;  // surfaces, then colliders
+  std::size_t surface_count_ = 0;
   std::vector<float> times_;
 };
 

@@ -103,19 +103,21 @@ std::string rotate_operation(RotateOrder order) {
   return name;
 }
 
-// One surface of a USD file: collects the samples of each attribute until they can be written.
+// One surface or collider of a USD file: collects the samples of each attribute until they can be
+// written.
 class UsdaSurface {
  public:
   // Errors: Unwritable; Interrupted.
-  static Result<UsdaSurface> make(const AnimationPlan& plan, const AnimatedSurface& surface);
+  static Result<UsdaSurface> make(const AnimationPlan& plan, const AnimatedSurface& surface,
+                                  WrittenAs as);
 
   // Errors: Unwritable; NotFinite; Interrupted.
   Result<void> add(const SurfacePose& pose, int frame);
 
   // Writes the prim with the given name. `material_path` returns the path of a material's prim by
-  // its name. Errors: Unwritable; Interrupted.
+  // its name; null: of that of colliders. Errors: Unwritable; Interrupted.
   Result<void> write(const std::string& name,
-                     const std::function<std::string(const std::string&)>& material_path,
+                     const std::function<std::string(const std::string*)>& material_path,
                      AtomicFile& file);
 
   const Mesh& mesh() const { return *mesh_; }
@@ -128,17 +130,19 @@ class UsdaSurface {
     std::vector<std::string> samples = {};
   };
 
-  UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface, SpoolFile points,
-              SpoolFile normals, SpoolFile velocities);
+  UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface, WrittenAs as,
+              SpoolFile points, SpoolFile normals, SpoolFile velocities);
 
+  Result<void> add_pose(const Field& positions, int frame);
   Result<void> add_sample(SpoolFile& samples, int frame, std::span<const float> numbers);
   Result<void> add_velocities(int frame, const Field& way);
   void add_placement(const Placement& placement);
   std::string head(const std::string& name) const;
   Result<void> add_topology(TextPieces& out) const;
   Result<void> add_uvs(TextPieces& out) const;
+  std::string samples_of(const Operation& operation) const;
   std::string placement() const;
-  Result<void> add_subsets(const std::function<std::string(const std::string&)>& material_path,
+  Result<void> add_subsets(const std::function<std::string(const std::string*)>& material_path,
                            TextPieces& out) const;
 
   std::string name_;
@@ -147,16 +151,18 @@ class UsdaSurface {
   int first_frame_;
   int last_frame_;
   double fps_;
-  bool is_placed_;
+  WrittenAs as_;
   StopRequest should_stop_;
   std::string rest_;     // points at rest
   std::string extents_;  // samples
   SpoolFile points_, normals_, velocities_;
-  std::optional<Field> last_;  // positions of the last frame
+  std::optional<Field> last_;     // positions of the last frame
+  bool is_last_written_ = false;  // of a collider
   std::vector<Operation> operations_;
+  Operation visibility_ = {"token", "visibility"};  // of a collider
 };
 
-UsdaSurface::UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface,
+UsdaSurface::UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surface, WrittenAs as,
                          SpoolFile points, SpoolFile normals, SpoolFile velocities)
     : name_(surface.name),
       written_(*surface.mesh),
@@ -164,20 +170,22 @@ UsdaSurface::UsdaSurface(const AnimationPlan& plan, const AnimatedSurface& surfa
       first_frame_(plan.first_frame),
       last_frame_(plan.last_frame),
       fps_(plan.fps),
-      is_placed_(plan.is_placed),
+      as_(as),
       should_stop_(plan.should_stop),
       points_(std::move(points)),
       normals_(std::move(normals)),
       velocities_(std::move(velocities)) {}
 
-Result<UsdaSurface> UsdaSurface::make(const AnimationPlan& plan, const AnimatedSurface& surface) {
+Result<UsdaSurface> UsdaSurface::make(const AnimationPlan& plan, const AnimatedSurface& surface,
+                                      WrittenAs as) {
   auto points = SpoolFile::create(plan.file);
   if (!points) return fail(points.error());
   auto normals = SpoolFile::create(plan.file);
   if (!normals) return fail(normals.error());
   auto velocities = SpoolFile::create(plan.file);
   if (!velocities) return fail(velocities.error());
-  UsdaSurface made(plan, surface, *std::move(points), *std::move(normals), *std::move(velocities));
+  UsdaSurface made(plan, surface, as, *std::move(points), *std::move(normals),
+                   *std::move(velocities));
   const auto rest = to_single(surface.rest, plan.first_frame, surface.mesh->first_index);
   if (!rest) return fail(rest.error());
   const ByteSink keep = [&](std::string_view bytes) -> Result<void> {
@@ -202,11 +210,40 @@ Result<void> UsdaSurface::add_sample(SpoolFile& samples, int frame,
 }
 
 Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
-  if (is_placed_) {
-    auto held = check_placement(pose.placement, PlacementNumbers::Double, name_, frame);
+  if (as_ != WrittenAs::Surface) {
+    auto held =
+        check_placement(pose.placement, PlacementNumbers::Double, told_as(as_, name_), frame);
     if (!held) return held;
+    add_placement(pose.placement);
   }
-  const auto numbers = to_single(pose.positions, frame, mesh_->first_index);
+  if (as_ != WrittenAs::Collider) {
+    if (auto added = add_pose(pose.positions, frame); !added) return added;
+    if (last_) {
+      const Field way = pose.positions - *last_;
+      if (auto added = add_velocities(frame - 1, way); !added) return added;
+      if (frame == last_frame_) {
+        if (auto added = add_velocities(frame, way); !added) return added;
+      }
+    }
+    last_ = pose.positions;
+    return {};
+  }
+  // Only where they change: in between and before and after values are held.
+  visibility_.samples.emplace_back(pose.is_shown ? "\"inherited\"" : "\"invisible\"");
+  const bool changes = !last_ || !are_equal(*last_, pose.positions);
+  if (changes && last_ && !is_last_written_) {
+    if (auto added = add_pose(*last_, frame - 1); !added) return added;
+  }
+  if (changes) {
+    if (auto added = add_pose(pose.positions, frame); !added) return added;
+  }
+  last_ = pose.positions;
+  is_last_written_ = changes;
+  return {};
+}
+
+Result<void> UsdaSurface::add_pose(const Field& positions, int frame) {
+  const auto numbers = to_single(positions, frame, mesh_->first_index);
   if (!numbers) return fail(numbers.error());
   if (auto added = add_sample(points_, frame, *numbers); !added) return added;
 
@@ -214,7 +251,7 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
   append_extent(*numbers, extents_);
   extents_ += ",\n";
 
-  auto normals = unit_normals(*mesh_, pose.positions, should_stop_);
+  auto normals = unit_normals(*mesh_, positions, should_stop_);
   if (!normals) return fail(normals.error());
   StopPoll poll(should_stop_);
   Field rows;  // one per corner if not one per vertex
@@ -227,18 +264,7 @@ Result<void> UsdaSurface::add(const SurfacePose& pose, int frame) {
   }
   const auto directions = to_single(mesh_->corner_normals.empty() ? *normals : rows, frame);
   if (!directions) return fail(directions.error());
-  if (auto added = add_sample(normals_, frame, *directions); !added) return added;
-
-  if (last_) {
-    const Field way = pose.positions - *last_;
-    if (auto added = add_velocities(frame - 1, way); !added) return added;
-    if (frame == last_frame_) {
-      if (auto added = add_velocities(frame, way); !added) return added;
-    }
-  }
-  last_ = pose.positions;
-  if (is_placed_) add_placement(pose.placement);
-  return {};
+  return add_sample(normals_, frame, *directions);
 }
 
 Result<void> UsdaSurface::add_velocities(int frame, const Field& way) {
@@ -263,7 +289,7 @@ void UsdaSurface::add_placement(const Placement& placement) {
 std::string UsdaSurface::head(const std::string& name) const {
   std::string text = fmt::format("    def Mesh \"{}\" (\n", name);
   if (name != name_) text += fmt::format("{}displayName = {}\n", indent, usda_string(name_));
-  if (!mesh_->materials.names.empty())
+  if (as_ == WrittenAs::Collider || !mesh_->materials.names.empty())
     text += fmt::format("{}prepend apiSchemas = [\"MaterialBindingAPI\"]\n", indent);
   text += "    )\n    {\n";
   return text +
@@ -308,29 +334,33 @@ Result<void> UsdaSurface::add_uvs(TextPieces& out) const {
   return {};
 }
 
+std::string UsdaSurface::samples_of(const Operation& operation) const {
+  const bool is_moving =
+      std::any_of(operation.samples.begin(), operation.samples.end(),
+                  [&](const std::string& sample) { return sample != operation.samples[0]; });
+  if (!is_moving) {
+    return fmt::format("{}{} {} = {}\n", indent, operation.type, operation.name,
+                       operation.samples[0]);
+  }
+  std::string text =
+      fmt::format("{}{} {}.timeSamples = {{\n", indent, operation.type, operation.name);
+  for (std::size_t k = 0; k < operation.samples.size(); ++k)
+    text += sample_head(first_frame_ + static_cast<int>(k)) + operation.samples[k] + ",\n";
+  return text + fmt::format("{}}}\n", indent);
+}
+
 std::string UsdaSurface::placement() const {
   if (operations_.empty()) return {};
   std::string text, order;
   for (const Operation& operation : operations_) {
-    const bool is_moving =
-        std::any_of(operation.samples.begin(), operation.samples.end(),
-                    [&](const std::string& sample) { return sample != operation.samples[0]; });
-    if (is_moving) {
-      text += fmt::format("{}{} {}.timeSamples = {{\n", indent, operation.type, operation.name);
-      for (std::size_t k = 0; k < operation.samples.size(); ++k)
-        text += sample_head(first_frame_ + static_cast<int>(k)) + operation.samples[k] + ",\n";
-      text += fmt::format("{}}}\n", indent);
-    } else {
-      text += fmt::format("{}{} {} = {}\n", indent, operation.type, operation.name,
-                          operation.samples[0]);
-    }
+    text += samples_of(operation);
     order += fmt::format("{}\"{}\"", order.empty() ? "" : ", ", operation.name);
   }
   return text + fmt::format("{}uniform token[] xformOpOrder = [{}]\n", indent, order);
 }
 
 Result<void> UsdaSurface::add_subsets(
-    const std::function<std::string(const std::string&)>& material_path, TextPieces& out) const {
+    const std::function<std::string(const std::string*)>& material_path, TextPieces& out) const {
   UsdaNames names;
   std::string& text = out.text;
   for (const auto& [faces, family] :
@@ -357,7 +387,7 @@ Result<void> UsdaSurface::add_subsets(
       text += '\n';
       if (is_material) {
         text += fmt::format("{}    rel material:binding = <{}>\n", indent,
-                            material_path(faces.names[k]));
+                            material_path(&faces.names[k]));
       }
       text += fmt::format("{}}}\n", indent);
       if (auto passed = out.pass_on(); !passed) return passed;
@@ -369,7 +399,7 @@ Result<void> UsdaSurface::add_subsets(
 }
 
 Result<void> UsdaSurface::write(const std::string& name,
-                                const std::function<std::string(const std::string&)>& material_path,
+                                const std::function<std::string(const std::string*)>& material_path,
                                 AtomicFile& file) {
   const ByteSink write = [&](std::string_view bytes) { return file.write(bytes); };
   TextPieces out(write, should_stop_);
@@ -392,58 +422,81 @@ Result<void> UsdaSurface::write(const std::string& name,
   }
   if (auto added = add_uvs(out); !added) return added;
   out.text += placement();
-  if (auto added = add_subsets(material_path, out); !added) return added;
+  if (as_ == WrittenAs::Collider) {
+    out.text += samples_of(visibility_);
+    out.text += fmt::format("{}rel material:binding = <{}>\n", indent, material_path(nullptr));
+  } else if (auto added = add_subsets(material_path, out); !added) {
+    return added;
+  }
   out.text += "    }\n";
   return out.finish();
 }
 
-// The materials named by faces, as prims that a program can shade.
+// The materials named by faces, and that of colliders, as prims that a program can shade.
 class MaterialScope {
  public:
   explicit MaterialScope(std::string scope) : scope_(std::move(scope)) {}
 
-  std::string path_of(const std::string& name) {
-    const auto [place, is_new] = numbers_.try_emplace(name, prims_.size());
-    if (is_new) prims_.emplace_back(name, names_.take(name));
-    return path(prims_[place->second].second);
+  // Null: that of colliders.
+  std::string path_of(const std::string* name) {
+    Material material{name ? *name : "collider", {}, name == nullptr};
+    const auto [place, is_new] =
+        numbers_.try_emplace({material.is_of_colliders, material.name}, materials_.size());
+    if (is_new) {
+      material.prim = names_.take(material.name);
+      materials_.push_back(std::move(material));
+    }
+    return path(materials_[place->second].prim);
   }
 
   std::string text() const {
-    if (prims_.empty()) return {};
+    if (materials_.empty()) return {};
     std::string text = fmt::format("\n    def Scope \"{}\"\n    {{\n", scope_);
-    for (const auto& [name, prim] : prims_) {
+    for (const auto& [name, prim, is_of_colliders] : materials_) {
       text += fmt::format("        def Material \"{}\"", prim);
       if (prim != name)
         text += fmt::format(" (\n            displayName = {}\n        )", usda_string(name));
       text += fmt::format(
           "\n        {{\n            token outputs:surface.connect = "
           "<{0}/surface.outputs:surface>\n\n            def Shader \"surface\"\n            {{\n"
-          "                uniform token info:id = \"UsdPreviewSurface\"\n"
+          "                uniform token info:id = \"UsdPreviewSurface\"\n{1}"
           "                float inputs:roughness = 0.7\n"
           "                token outputs:surface\n            }}\n        }}\n",
-          path(prim));
+          path(prim),
+          is_of_colliders
+              ? fmt::format("                color3f inputs:diffuseColor = ({0}, {0}, {0})\n",
+                            collider_grey)
+              : "");
     }
     return text + "    }\n";
   }
 
  private:
+  struct Material {
+    std::string name, prim;
+    bool is_of_colliders;
+  };
+
   std::string path(const std::string& prim) const { return "/scene/" + scope_ + '/' + prim; }
 
   std::string scope_;
   UsdaNames names_;
-  std::vector<std::pair<std::string, std::string>> prims_;   // name, prim
-  std::map<std::string, std::size_t, std::less<>> numbers_;  // of the prims by their names
+  std::vector<Material> materials_;
+  std::map<std::pair<bool, std::string>, std::size_t> numbers_;  // of the colliders', by its name
 };
 
 class UsdaWriter final : public AnimationWriter {
  public:
-  UsdaWriter(AtomicFile file, std::vector<UsdaSurface> surfaces)
-      : file_(std::move(file)), surfaces_(std::move(surfaces)) {}
+  UsdaWriter(AtomicFile file, std::vector<UsdaSurface> things, std::size_t surface_count)
+      : file_(std::move(file)), things_(std::move(things)), surface_count_(surface_count) {}
 
-  Result<void> write(int frame, std::span<const SurfacePose> surfaces) override {
-    PLIANT_EXPECTS(surfaces.size() == surfaces_.size());
-    for (std::size_t k = 0; k < surfaces.size(); ++k) {
-      if (auto added = surfaces_[k].add(surfaces[k], frame); !added) return added;
+  Result<void> write(int frame, std::span<const SurfacePose> surfaces,
+                     std::span<const SurfacePose> colliders) override {
+    PLIANT_EXPECTS(surfaces.size() == surface_count_ &&
+                   surfaces.size() + colliders.size() == things_.size());
+    for (std::size_t k = 0; k < things_.size(); ++k) {
+      const SurfacePose& pose = k < surface_count_ ? surfaces[k] : colliders[k - surface_count_];
+      if (auto added = things_[k].add(pose, frame); !added) return added;
     }
     return {};
   }
@@ -451,11 +504,11 @@ class UsdaWriter final : public AnimationWriter {
   Result<void> finish() override {
     UsdaNames names;
     std::vector<std::string> prims;
-    for (const UsdaSurface& surface : surfaces_) prims.push_back(names.take(surface.name()));
+    for (const UsdaSurface& thing : things_) prims.push_back(names.take(thing.name()));
     MaterialScope materials(names.take("materials"));
-    for (std::size_t k = 0; k < surfaces_.size(); ++k) {
-      auto written = surfaces_[k].write(
-          prims[k], [&](const std::string& name) { return materials.path_of(name); }, file_);
+    for (std::size_t k = 0; k < things_.size(); ++k) {
+      auto written = things_[k].write(
+          prims[k], [&](const std::string* name) { return materials.path_of(name); }, file_);
       if (!written) return written;
     }
     if (auto written = file_.write(materials.text() + "}\n"); !written) return written;
@@ -464,7 +517,8 @@ class UsdaWriter final : public AnimationWriter {
 
  private:
   AtomicFile file_;
-  std::vector<UsdaSurface> surfaces_;
+  std::vector<UsdaSurface> things_;  // surfaces, then colliders
+  std::size_t surface_count_;
 };
 
 }  // namespace
@@ -473,13 +527,21 @@ Result<std::unique_ptr<AnimationWriter>> make_usda_writer(const AnimationPlan& p
   auto file = AtomicFile::create(plan.file);
   if (!file) return fail(file.error());
   if (auto written = file->write(layer_head(plan)); !written) return fail(written.error());
-  std::vector<UsdaSurface> surfaces;
-  for (const AnimatedSurface& surface : plan.surfaces) {
-    auto made = UsdaSurface::make(plan, surface);
+  std::vector<UsdaSurface> things;
+  const auto add = [&](const AnimatedSurface& surface, WrittenAs as) -> Result<void> {
+    auto made = UsdaSurface::make(plan, surface, as);
     if (!made) return fail(made.error());
-    surfaces.push_back(*std::move(made));
+    things.push_back(*std::move(made));
+    return {};
+  };
+  for (const AnimatedSurface& surface : plan.surfaces) {
+    auto added = add(surface, plan.is_placed ? WrittenAs::PlacedSurface : WrittenAs::Surface);
+    if (!added) return fail(added.error());
   }
-  return std::make_unique<UsdaWriter>(*std::move(file), std::move(surfaces));
+  for (const AnimatedSurface& collider : plan.colliders) {
+    if (auto added = add(collider, WrittenAs::Collider); !added) return fail(added.error());
+  }
+  return std::make_unique<UsdaWriter>(*std::move(file), std::move(things), plan.surfaces.size());
 }
 
 }  // namespace pliant
