@@ -13,6 +13,7 @@
 #include "pliant/feedback/surface_lines.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/channels.hpp"
+#include "viewer/colliders.hpp"
 #include "viewer/forces.hpp"
 #include "viewer/json.hpp"
 #include "viewer/mesh_order.hpp"
@@ -55,15 +56,6 @@ std::vector<float> vertex_uvs(const Mesh& mesh) {
   return uvs;
 }
 
-Json transform_json(const Transform& transform) {
-  Json numbers = Json::array();
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) numbers.push_back(transform.linear(row, column));
-    numbers.push_back(transform.translation[row]);
-  }
-  return numbers;
-}
-
 // One surface during the run.
 class SurfaceView {
  public:
@@ -76,7 +68,7 @@ class SurfaceView {
         marks_(shape) {}
 
   Result<void> add(const SurfaceFrame& frame, int number) {
-    transforms_.push_back(transform_json(frame.transform()));
+    transforms_.push_back(to_json(frame.transform()));
     peak_displacement_ = std::max(peak_displacement_, frame.told_displacement());
     Field positions = frame.positions();
     low_ = low_.cwiseMin(positions.colwise().minCoeff().transpose());
@@ -137,10 +129,7 @@ class SurfaceView {
     if (rest_motion_) {
       const auto rest = rest_motion_->pack(should_stop);
       if (!rest) return fail(rest.error());
-      json["restMotion"] = {{"step", rest->step},
-                            {"predictors", arrays.add(rest->predictors)},
-                            {"lowBytes", arrays.add(rest->low)},
-                            {"highBytes", arrays.add(rest->high)}};
+      json["restMotion"] = to_json(*rest, arrays);
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     if (shape_.held) json["pins"] = arrays.add(held_vertices());
@@ -211,7 +200,7 @@ Json messages_of(const Simulation& simulation) {
 
 Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
                           std::size_t max_memory) {
-  std::size_t vertex_count = 0;
+  std::size_t vertex_count = moving_vertices(simulation.scene());
   for (const RestShape& shape : simulation.rest_shapes()) {
     const int motions = shape.animation ? 2 : 1;
     vertex_count += static_cast<std::size_t>(motions) * shape.mesh.vertex_count();
@@ -296,17 +285,22 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
                         static_cast<std::size_t>(frames.count());
   const auto channels = view_channels(scene, frames, limits.should_stop);
   if (!channels) return fail(channels.error());
-  const Json head = {{"version", 1},
-                     {"scene", scene.origin.file},
-                     {"fps", scene.fps},
-                     {"first", frames.first},
-                     {"last", frames.last},
-                     {"sceneFrames", {scene.start, scene.end}},
-                     {"displaced", bake.course.displaced},
-                     {"surfaces", shown},
-                     {"forces", *forces},
-                     {"channels", *channels},
-                     {"messages", messages_of(simulation)}};
+  Json head = {{"version", 1},
+               {"scene", scene.origin.file},
+               {"fps", scene.fps},
+               {"first", frames.first},
+               {"last", frames.last},
+               {"sceneFrames", {scene.start, scene.end}},
+               {"displaced", bake.course.displaced},
+               {"surfaces", shown},
+               {"forces", *forces},
+               {"channels", *channels},
+               {"messages", messages_of(simulation)}};
+  if (!scene.colliders.empty()) {
+    auto colliders = view_colliders(scene, frames, arrays, limits.should_stop);
+    if (!colliders) return fail(colliders.error());
+    head["colliders"] = *std::move(colliders);
+  }
   auto packed = deflated(joined(head, arrays.take()), limits.should_stop);
   if (!packed) return fail(packed.error());
   bake.packed = *std::move(packed);

@@ -28,25 +28,17 @@ struct AddValues {
   void operator()(const Attribute& attribute, const std::optional<Channel<3>>& channel) const {
     if (channel) (*this)(attribute, *channel);
   }
+  void operator()(const Attribute& attribute, const Switch& channel) const {
+    add(attribute.name, [&](int frame) { return Json(channel.at(frame)); });
+  }
   template <class Other>
   void operator()(const Attribute&, const Other&) const {}  // not a channel
 };
 
-// The value at each frame, or a single value if all are equal.
-Json track(const FrameSpan& frames, const std::function<Json(int)>& value_at) {
-  Json values = Json::array();
-  bool is_constant = true;
-  for (int frame = frames.first; frame <= frames.last; ++frame) {
-    values.push_back(value_at(frame));
-    is_constant = is_constant && values.back() == values.front();
-  }
-  if (is_constant) return Json::array({values.front()});
-  return values;
-}
-
-Json track(const Channel<1>& channel, const FrameSpan& frames) {
+Json channel_track(const Channel<1>& channel, const FrameSpan& frames) {
   return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
 }
+
 // Parts of a scene by their names.
 class Named {
  public:
@@ -94,10 +86,10 @@ Json force_json(const Simulation& simulation, const Named& named, const Force& f
   json["enabled"] = track(frames, [&](int frame) {
     return Json(force.enabled.at(frame) && (group == nullptr || group->enabled.at(frame)));
   });
-  json["magnitude"] = track(force.magnitude, frames);
+  json["magnitude"] = channel_track(force.magnitude, frames);
   if (group == nullptr && named.selects(force.targets))
-    json["deformationRadius"] = track(force.deformation_radius, frames);
-  json["forceRadius"] = track(force.force_radius, frames);
+    json["deformationRadius"] = channel_track(force.deformation_radius, frames);
+  json["forceRadius"] = channel_track(force.force_radius, frames);
   for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
     json[std::string(name)] =
         force.follow.empty() ? track(frames, value_at) : track(frames, [&](int frame) {
@@ -117,7 +109,7 @@ Json group_json(const Simulation& simulation, const Named& named, const Group& g
                   return Json(simulation.in_world(group, frame).center.at(frame));
                 })}};
   if (named.selects(group.targets))
-    json["deformationRadius"] = track(group.deformation_radius, frames);
+    json["deformationRadius"] = channel_track(group.deformation_radius, frames);
   return json;
 }
 
@@ -128,6 +120,23 @@ Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 void for_each_value(const Force& force,
                     const std::function<void(std::string_view, const ValueAt&)>& add) {
   std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
+}
+
+void for_each_value(const Collider& collider,
+                    const std::function<void(std::string_view, const ValueAt&)>& add) {
+  describe(AddValues{add}, collider);
+  std::visit([&](const auto& shape) { describe(AddValues{add}, shape); }, collider.shape);
+}
+
+Json track(const FrameSpan& frames, const ValueAt& value_at) {
+  Json values = Json::array();
+  bool is_constant = true;
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    values.push_back(value_at(frame));
+    is_constant = is_constant && values.back() == values.front();
+  }
+  if (is_constant) return Json::array({values.front()});
+  return values;
 }
 
 Result<Json> view_forces(const Simulation& simulation, const FrameSpan& frames,

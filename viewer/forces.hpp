@@ -27,6 +27,13 @@ using ValueAt = std::function<Json(int frame)>;
 void for_each_value(const Force& force,
                     const std::function<void(std::string_view, const ValueAt&)>& add);
 
+/// Likewise for the channels of a collider and of its shape, but for its transform.
+void for_each_value(const Collider& collider,
+                    const std::function<void(std::string_view, const ValueAt&)>& add);
+
+/// The value at each frame, or a single value if all are equal.
+Json track(const FrameSpan& frames, const ValueAt& value_at);
+
 /// The forces and groups of a scene as a page draws them: their places in the world and radii at
 /// each frame. Thesis 5.2.2.
 ///

@@ -63,6 +63,13 @@ std::size_t weight(std::span<const std::uint16_t> numbers) {
 
 }  // namespace
 
+Json to_json(const PackedMotion& motion, Arrays& arrays) {
+  return {{"step", motion.step},
+          {"predictors", arrays.add(motion.predictors)},
+          {"lowBytes", arrays.add(motion.low)},
+          {"highBytes", arrays.add(motion.high)}};
+}
+
 MotionPacker::MotionPacker(Field rest, std::vector<int> order)
     : rest_(std::move(rest)), order_(std::move(order)) {}
 

@@ -7,6 +7,7 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
+#include "viewer/arrays.hpp"
 
 namespace pliant::viewer {
 
@@ -22,6 +23,9 @@ struct PackedMotion {
   std::string low;         ///< #frames x 3 x #vertices low bytes: all x of a frame, then y, then z
   std::string high;        ///< the high bytes likewise
 };
+
+/// As a head has it: its step, and the places of its arrays, which are added.
+Json to_json(const PackedMotion& motion, Arrays& arrays);
 
 /// Prediction of a number of a frame from earlier numbers.
 namespace prediction {

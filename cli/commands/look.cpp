@@ -39,6 +39,7 @@ const std::vector<LookWord>& look_words() {
       {"labels", Kind::Word, on_or_off},
       {"regions", Kind::Word, on_or_off},
       {"boxes", Kind::Word, on_or_off},
+      {"colliders", Kind::Word, on_or_off},
       {"floor", Kind::Word, on_or_off},
       {"legend", Kind::Word, on_or_off},
       {"caption", Kind::Word, on_or_off},

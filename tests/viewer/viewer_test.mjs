@@ -669,6 +669,142 @@ test("held nodes have pins that ride on the surface", async () => {
   assert.equal(pink("none"), 0);
 });
 
+/** A sheet and one collider of each kind, with keys. */
+const collidersScene = `<scene version="1" start="1" end="9">
+  <surface name="s"><grid columns="9" rows="9" width="10" depth="10"/></surface>
+  <collider name="ball" friction="0.5" stick="true"><sphere><animate attribute="radius"><key frame="1" value="1"/><key frame="9" value="2"/></animate></sphere>
+    <transform scale="-1 1 1" rotate="10 20 30"><animate attribute="translate"><key frame="1" value="0 3 0"/><key frame="9" value="1 1 2"/></animate></transform></collider>
+  <collider name="arm"><capsule radius="0.5"><animate attribute="length"><key frame="1" value="0"/><key frame="9" value="3"/></animate></capsule>
+    <transform translate="3 2 1" rotate="0 0 90"/></collider>
+  <collider name="crate"><animate attribute="enabled"><key frame="1" value="true"/><key frame="5" value="false"/></animate>
+    <box size="1 2 3"/><transform translate="-3 2 1" scale="2 1 1"/></collider>
+  <collider name="pad" offset="0.1"><box size="1 2 3" round="0.2"/><transform translate="-3 2 -3" scale="2 1 1"/></collider>
+  <collider name="floor"><plane/><transform rotate="0 0 10"><animate attribute="translate"><key frame="1" value="0 -2 0"/><key frame="9" value="4 -2 0"/></animate></transform></collider>
+</scene>`;
+
+/** Of each collider that is shown its points in the world, by its name. */
+const solidsOf = (page) =>
+  page.evaluate(() => {
+    const { stage, viewer } = window.pliant;
+    stage.draw();
+    stage.scene.updateMatrixWorld(true);
+    const solids = viewer.colliders.filter(({ group }) => group.visible).map(({ mesh, collider }) => {
+      const { array, count } = mesh.geometry.getAttribute("position");
+      const m = mesh.matrixWorld.elements;
+      const points = Array.from({ length: count }, (_, k) => [0, 1, 2].map((row) => m[row] * array[3 * k] + m[row + 4] * array[3 * k + 1] + m[row + 8] * array[3 * k + 2] + m[row + 12]));
+      return [collider.head.name, points];
+    });
+    return Object.fromEntries(solids);
+  });
+
+test("colliders are solids that go with their keys", async () => {
+  const scene = inFolder("colliders.xml");
+  writeFileSync(scene, collidersScene);
+  const [places, radii, lengths] = ["ball.translate", "ball.radius", "arm.length"].map((channel) => curve(scene, channel));
+  const floors = curve(scene, "floor.translate");
+  await withPage(pageOf(scene), {}, async (page) => {
+    const size = (points, axis) => Math.max(...points.map((point) => point[axis])) - Math.min(...points.map((point) => point[axis]));
+    for (const frame of [1, 4, 5, 9, 2]) {
+      await goTo(page, frame);
+      const { ball, arm, crate, pad, floor } = await solidsOf(page);
+      const [radius] = radii.get(frame);
+      for (const point of ball) near(Math.hypot(...point.map((number, k) => number - places.get(frame)[k])), radius, 1e-5, `ball at ${frame}`);
+      near(size(arm, 0), lengths.get(frame)[0] + 1, 1e-4, `arm at ${frame}`); // turned to x
+      near(size(arm, 1), 1, 1e-4, `width of the arm at ${frame}`);
+      assert.equal(crate !== undefined, frame < 5);
+      for (const box of [crate, pad].filter((each) => each)) [2, 2, 3].forEach((length, axis) => near(size(box, axis), length, 1e-5, "box"));
+      // The square lies in the plane, near the surface.
+      const turn = (10 * Math.PI) / 180;
+      const [x] = floors.get(frame);
+      assert.equal(floor.length, 4);
+      for (const point of floor) near(-Math.sin(turn) * (point[0] - x) + Math.cos(turn) * (point[1] + 2), 0, 1e-4, "floor");
+      const middle = [0, 2].map((axis) => floor.reduce((sum, point) => sum + point[axis] / 4, 0));
+      assert.ok(Math.hypot(...middle) < 4, `${middle}`);
+    }
+    // Normals look outwards, and hard edges are hard.
+    const looks = await page.evaluate(() =>
+      window.pliant.viewer.colliders.slice(0, 4).map(({ mesh }) => {
+        const [p, n] = ["position", "normal"].map((name) => mesh.geometry.getAttribute(name).array);
+        let least = 1;
+        for (let k = 0; k < p.length; k += 3) least = Math.min(least, p[k] * n[k] + p[k + 1] * n[k + 1] + p[k + 2] * n[k + 2]);
+        return [least > 0, mesh.material.flatShading];
+      }));
+    assert.deepEqual(looks, [[true, false], [true, false], [true, true], [true, false]]);
+  });
+});
+
+test("colliders are named, listed, and hidden", async () => {
+  writeFileSync(inFolder("colliders.xml"), collidersScene);
+  const url = pageOf(inFolder("colliders.xml"));
+  const shown = async (page) => Object.keys(await solidsOf(page)).join(" ");
+  const all = "ball arm crate pad floor";
+  await withPage(url, {}, async (page) => {
+    assert.equal(await shown(page), all);
+    assert.deepEqual((await page.evaluate(() => window.pliant.labels())).sort(), all.split(" ").sort());
+    await page.keyboard.press("d");
+    const row = (name) => page.locator("#forces li").filter({ hasText: new RegExp(`^${name}`) });
+    assert.equal(await row("arm").innerText().then((text) => text.replace(/\s+/g, " ")), "arm capsule solo");
+    await row("arm").getByRole("checkbox").uncheck();
+    assert.equal(await shown(page), "ball crate pad floor");
+    await page.getByRole("button", { name: "Show pad alone" }).click();
+    assert.equal(await shown(page), "pad");
+    await page.getByRole("button", { name: "Show all forces and colliders" }).click();
+    await page.getByLabel("Colliders", { exact: true }).uncheck();
+    assert.equal(await shown(page), "");
+    assert.deepEqual(await page.evaluate(() => window.pliant.labels()), []);
+    // The curve panel has their channels.
+    assert.deepEqual(await page.evaluate(() => window.pliant.viewer.bake.head.channels.map(({ path }) => path).sort()),
+      ["arm.length", "ball.radius", "ball.translate", "crate.enabled", "floor.translate"]);
+    for (const colorScheme of ["dark", "light"]) {
+      await page.emulateMedia({ colorScheme });
+      await page.getByLabel("Colliders", { exact: true }).check();
+      await page.waitForTimeout(100);
+      await page.screenshot({ path: path.join(pictures, `colliders-${colorScheme}.png`) });
+    }
+  });
+  for (const [words, expected] of [["colliders=off", ""], ["clean", ""], ["clean&colliders=on", all], ["hide=ball,floor", "arm crate pad"], ["gizmos=off", all]])
+    await withPage(`${url}#${words}`, {}, async (page) => assert.equal(await shown(page), expected, words));
+  // Without colliders, nothing speaks of them.
+  await withPage(pageOf(example("sheet")), {}, async (page) => {
+    await page.keyboard.press("d");
+    assert.equal(await page.getByLabel("Colliders", { exact: true }).isVisible(), false);
+    assert.equal(await page.evaluate(() => "colliders" in window.pliant.viewer.bake.head), false);
+  });
+});
+
+test("the readout has the values of the collider under the cursor", async () => {
+  writeFileSync(inFolder("colliders.xml"), collidersScene);
+  await withPage(`${pageOf(inFolder("colliders.xml"))}#frame=5`, {}, async (page) => {
+    const at = await page.evaluate(() => {
+      const { stage, viewer } = window.pliant;
+      const seen = stage.camera.position.clone().setFromMatrixPosition(viewer.colliders[0].group.matrix).project(stage.camera);
+      const box = stage.canvas.getBoundingClientRect();
+      return [box.left + ((seen.x + 1) / 2) * box.width, box.top + ((1 - seen.y) / 2) * box.height];
+    });
+    await page.mouse.move(...at);
+    await page.waitForFunction(() => document.getElementById("readout").textContent !== "");
+    const text = () => page.locator("#readout").innerText().then((words) => words.replace(/\s+/g, " "));
+    assert.match(await text(), /^sphere ball position 0\.5\d*, 2\.0\d*, 1\.0\d* deformationRadius 1\.0000 offset 0 friction 0\.50000 stick on radius 1\.5\d*$/);
+    await goTo(page, 9);
+    assert.match(await text(), /radius 2\.0000$/);
+  });
+});
+
+test("the camera frames colliders near the surface, while they are drawn", async () => {
+  const scene = (height) => `<scene version="1" start="1" end="2"><surface name="s"><grid columns="9" rows="9" width="10" depth="10"/></surface>
+    <collider name="ball"><sphere/><transform translate="0 ${height} 0"/></collider></scene>`;
+  for (const [height, top] of [[2, 3], [900, 0]]) {
+    writeFileSync(inFolder("near.xml"), scene(height));
+    await withPage(pageOf(inFolder("near.xml")), {}, async (page) => {
+      const aim = () => page.evaluate(() => window.pliant.stage.aim.max.y);
+      near(await aim(), top, 1e-5, "top");
+      await page.keyboard.press("d");
+      await page.getByLabel("Colliders", { exact: true }).uncheck();
+      near(await aim(), 0, 1e-5, "top of the sheet");
+    });
+  }
+});
+
 test("the legend of some frames says of which", async () => {
   for (const [frames, words] of [["30:40", "in frames 30 to 40"], ["12", "at frame 12"]]) {
     const peak = Number(run("bake", example("sheet"), "-o", "peak.npy", "--frames", frames).match(/peak displacement ([\d.]+)/)[1]);

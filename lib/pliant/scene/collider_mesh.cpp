@@ -68,6 +68,15 @@ std::optional<ColliderMesh> ColliderMesh::make(const Collider& collider, int fir
   return made;
 }
 
+bool ColliderMesh::moves_points() const {
+  if (const auto* const capsule = std::get_if<CapsuleChannels>(&collider_->shape))
+    return capsule->radius.is_animated() || capsule->length.is_animated();
+  const auto* const box = std::get_if<BoxChannels>(&collider_->shape);
+  return box && !is_sharp(*box) &&
+         (box->size.is_animated() || box->round.is_animated() ||
+          collider_->transform.scale.is_animated());
+}
+
 SurfacePose ColliderMesh::at(int frame) const {
   SurfacePose pose{.positions = {},
                    .placement = collider_->transform.placement_at(frame),

@@ -22,6 +22,8 @@ class ColliderMesh {
   const Collider& collider() const { return *collider_; }
   const Mesh& mesh() const { return solid_.mesh; }  ///< of the first frame
 
+  bool moves_points() const;  ///< whether points may differ from those of the first frame
+
   /// Points that change only if the lengths do and no scale can say so: those of a capsule, and of
   /// a box with round edges, which also take up its scale. The scale is above 0.
   SurfacePose at(int frame) const;

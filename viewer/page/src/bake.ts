@@ -1,5 +1,7 @@
 // The data that `pliant view` puts into the page, and its decoding; docs/viewer.md has the layout.
 
+import * as THREE from "three";
+
 /** A parameter with one value per frame, or a single value for all. */
 export type Track<T> = T[];
 export type Vector = [number, number, number];
@@ -86,6 +88,24 @@ export interface Force {
   pull?: Track<number>;
 }
 
+/** A solid that surfaces meet. */
+export interface ColliderHead {
+  name: string;
+  /** Of its shape. */
+  kind: string;
+  targets: string[];
+  enabled: Track<boolean>;
+  /** Of its other channels, but for its transform. */
+  values: Record<string, Track<number | boolean | Vector>>;
+  transforms: Track<number[]>;
+  /** At the first frame; a plane has neither these nor triangles. */
+  points?: ArrayPlace;
+  triangles?: ArrayPlace;
+  /** No face shares its normals with another. */
+  isFlat?: boolean;
+  motion?: MotionHead;
+}
+
 /** Rows of a frame number and the components of the value. */
 export interface Channel {
   path: string;
@@ -114,6 +134,7 @@ interface Head {
   displaced?: number[];
   surfaces: SurfaceHead[];
   forces: Force[];
+  colliders?: ColliderHead[];
   channels: Channel[];
   messages: Message[];
 }
@@ -133,6 +154,14 @@ export function vectorBetween(track: Track<Vector>, index: number, share: number
   if (share === 0) return here;
   const next = at(track, index + 1);
   return [0, 1, 2].map((k) => here[k] + share * (next[k] - here[k])) as Vector;
+}
+
+/** The first three rows of a matrix between frames, each number interpolated. */
+export function matrixBetween(track: Track<number[]>, index: number, share: number, out: THREE.Matrix4): THREE.Matrix4 {
+  const here = at(track, index);
+  const next = at(track, index + 1);
+  const t = here.map((number, k) => number + share * (next[k] - number));
+  return out.set(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], 0, 0, 0, 1);
 }
 
 /** Whole steps of all frames, each `count` numbers. */
@@ -230,6 +259,47 @@ export class BakedSurface {
   }
 }
 
+/** One collider over all frames, in its own space. */
+export class BakedCollider {
+  /** At the first frame; none of a plane. */
+  readonly points: Float32Array;
+  readonly triangles: Uint32Array;
+  private readonly motion?: Motion;
+  private readonly boxes: THREE.Box3[] = [];
+
+  constructor(
+    readonly head: ColliderHead,
+    arrays: ArrayBuffer,
+    start: number,
+  ) {
+    const bytes = (place: ArrayPlace) => new Uint8Array(arrays, start + place.begin, place.count);
+    const { points, triangles, motion } = head;
+    this.points = points ? new Float32Array(arrays, start + points.begin, points.count) : new Float32Array();
+    this.triangles = triangles ? new Uint32Array(arrays, start + triangles.begin, triangles.count) : new Uint32Array();
+    if (!motion) return;
+    const order = Uint32Array.from({ length: this.points.length / 3 }, (_, vertex) => vertex);
+    const steps = unfolded(bytes(motion.predictors), bytes(motion.lowBytes), bytes(motion.highBytes), order);
+    this.motion = { step: motion.step, count: this.points.length, steps };
+  }
+
+  /** Around its points at a frame. */
+  boxAt(index: number): THREE.Box3 {
+    if (!this.motion) index = 0;
+    if (!this.boxes[index]) {
+      const points = new Float32Array(this.points.length);
+      this.pointsAt(index, 0, points);
+      this.boxes[index] = new THREE.Box3().setFromArray(points as unknown as number[]);
+    }
+    return this.boxes[index].clone();
+  }
+
+  pointsAt(index: number, share: number, out: Float32Array): void {
+    if (this.motion) displace(this.motion, index, share, out);
+    else out.fill(0);
+    for (let k = 0; k < out.length; ++k) out[k] += this.points[k];
+  }
+}
+
 /** Vertices in the order of their nodes, those without one first, those of one node in the order of the mesh. */
 function vertexOrder(nodes: Int32Array, nodeCount: number): Uint32Array {
   const begins = new Uint32Array(nodeCount + 2);
@@ -276,11 +346,13 @@ export function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Arr
 export class Bake {
   readonly head: Head;
   readonly surfaces: BakedSurface[];
+  readonly colliders: BakedCollider[];
 
   constructor(unpacked: ArrayBuffer) {
     const { head, start } = split<Head>(unpacked);
     this.head = head;
     this.surfaces = head.surfaces.map((surface) => new BakedSurface(surface, unpacked, start));
+    this.colliders = (head.colliders ?? []).map((collider) => new BakedCollider(collider, unpacked, start));
   }
 
   get frameCount(): number {

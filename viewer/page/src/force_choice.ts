@@ -1,7 +1,13 @@
-// The forces that are shown: all except hidden ones, or only some chosen ones.
+// The forces and colliders that are shown: all except hidden ones, or only some chosen ones.
 
-import type { Force } from "./bake";
 import { Changing } from "./changing";
+
+/** What can be chosen by its name. */
+export interface Named {
+  name: string;
+  /** Of a force. */
+  group?: string;
+}
 
 export class ForceChoice extends Changing {
   /** Names, also of forces that do not exist at present: a save may bring them back. */
@@ -12,7 +18,7 @@ export class ForceChoice extends Changing {
    * A force shown alone is shown even if it is hidden. The choice for a group is also valid for its
    * forces.
    */
-  isShown({ name, group }: Force): boolean {
+  isShown({ name, group }: Named): boolean {
     const isIn = (names: Set<string>) => names.has(name) || (group !== undefined && names.has(group));
     return this.alone.size > 0 ? isIn(this.alone) : !isIn(this.hidden);
   }

@@ -1,8 +1,10 @@
-// The list of forces and groups, with controls to show or hide each, or to show it alone.
+// The list of forces, groups and colliders, with controls to show or hide each, or to show it alone.
 
 import type { Force } from "./bake";
 import { make } from "./element";
-import type { ForceChoice } from "./force_choice";
+import type { ForceChoice, Named } from "./force_choice";
+
+type Row = Named & { kind: string };
 
 /** First the forces without a group, then each group followed by its forces. */
 function ordered(forces: Force[]): Force[] {
@@ -11,7 +13,7 @@ function ordered(forces: Force[]): Force[] {
 }
 
 export class ForceList {
-  private forces: Force[] = [];
+  private forces: Row[] = [];
   private current = 0;
 
   constructor(
@@ -28,10 +30,11 @@ export class ForceList {
     });
   }
 
-  load(forces: Force[]): void {
-    this.forces = ordered(forces);
+  load(forces: Force[], colliders: Row[]): void {
+    this.forces = [...ordered(forces), ...colliders];
     this.list.replaceChildren(...this.forces.map((force) => this.row(force)));
-    this.list.parentElement!.hidden = forces.length === 0;
+    this.list.parentElement!.hidden = this.forces.length === 0;
+    this.showAll.textContent = colliders.length > 0 ? "Show all forces and colliders" : "Show all forces";
     this.makeCurrent(Math.min(this.current, Math.max(this.forces.length - 1, 0)));
     this.update();
   }
@@ -40,7 +43,7 @@ export class ForceList {
     return [...this.list.children] as HTMLElement[];
   }
 
-  private row({ name, kind, group }: Force): HTMLElement {
+  private row({ name, kind, group }: Row): HTMLElement {
     const box = make("input", { type: "checkbox" });
     box.addEventListener("change", () => this.choice.hide(name, !box.checked));
     const title = `Show ${name} alone`;

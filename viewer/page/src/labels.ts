@@ -1,4 +1,4 @@
-// Names beside the forces. If names would cover each other, the one with the highest rank is drawn.
+// Names beside the forces and colliders. If names would cover each other, the one with the highest rank is drawn.
 
 import * as THREE from "three";
 
@@ -12,6 +12,7 @@ export interface Label {
   rank: number;
   isFaint: boolean;
   isGroup: boolean;
+  isCollider?: boolean;
 }
 
 /** Area of a picture or a page: left, top, right, bottom. [px] */
@@ -52,7 +53,7 @@ export function drawLabels(context: CanvasRenderingContext2D, labels: Label[], c
     context.strokeStyle = palette.background;
     context.lineWidth = 0.28 * text;
     context.strokeText(words, area[0] + 2, (area[1] + area[3]) / 2);
-    context.fillStyle = label.isGroup ? palette.deformation : palette.force;
+    context.fillStyle = label.isCollider ? palette.ink : label.isGroup ? palette.deformation : palette.force;
     context.fillText(words, area[0] + 2, (area[1] + area[3]) / 2);
   }
   context.restore();

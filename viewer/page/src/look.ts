@@ -15,11 +15,12 @@ export interface Look {
   gizmos?: boolean;
   regions?: boolean;
   boxes?: boolean;
+  colliders?: boolean;
   labels?: boolean;
   legend?: boolean;
   caption?: boolean;
   floor?: boolean;
-  /** Names of forces and groups. */
+  /** Names of forces, groups and colliders. */
   hide?: string[];
   solo?: string[];
   /** The number at the top of the colours. */
@@ -49,6 +50,7 @@ export function readLook(address: string): Look {
     gizmos: isOn("gizmos"),
     regions: isOn("regions"),
     boxes: isOn("boxes"),
+    colliders: isOn("colliders"),
     labels: isOn("labels"),
     legend: isOn("legend"),
     caption: isOn("caption"),

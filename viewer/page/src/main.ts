@@ -27,7 +27,7 @@ const axis = new FrameAxis(element("timeline"), playback);
 const timeline = new Timeline(element("timeline"), playback, axis, themes);
 const curves = new CurvePanel(element("channels"), element("curve-view"), element("curve-values"), playback, axis, themes);
 const forceList = new ForceList(element("forces"), element("show-all"), viewer.forces);
-const readout = new Readout(stage, element("readout"), themes);
+const readout = new Readout(stage, element("readout"), playback, themes);
 
 // Playback
 
@@ -107,6 +107,10 @@ const setRegions = check("show-regions", (isOn) => {
 });
 const setBoxes = check("show-boxes", (isOn) => {
   display.hasBoxes = isOn;
+  redress();
+});
+const setColliders = check("show-colliders", (isOn) => {
+  display.hasColliders = isOn;
   redress();
 });
 const setFloor = check("show-floor", (isOn) => (stage.hasFloor = isOn));
@@ -216,10 +220,12 @@ function load(bake: Bake): void {
   setColour(display.colour);
   readout.views = viewer.views;
   curves.load(head.channels);
-  forceList.load(head.forces);
+  readout.colliders = viewer.colliders;
+  forceList.load(head.forces, head.colliders ?? []);
+  element<HTMLInputElement>("show-colliders").closest("label")!.hidden = viewer.colliders.length === 0;
   updateLegend();
   showMessages(element("messages"), head.messages);
-  element("view").setAttribute("aria-label", `${head.surfaces.map((each) => each.name).join(", ")}: ${bake.frameCount} frames, ${head.forces.length} forces`);
+  element("view").setAttribute("aria-label", `${head.surfaces.map((each) => each.name).join(", ")}: ${bake.frameCount} frames, ${head.forces.length} forces${head.colliders ? `, ${head.colliders.length} colliders` : ""}`);
 }
 
 function apply(look: Look): void {
@@ -232,6 +238,7 @@ function apply(look: Look): void {
   if (look.gizmos !== undefined) setGizmos(look.gizmos);
   if (look.regions !== undefined) setRegions(look.regions);
   if (look.boxes !== undefined) setBoxes(look.boxes);
+  if (look.colliders !== undefined) setColliders(look.colliders);
   if (look.labels !== undefined) setLabels(look.labels);
   if (look.hide || look.solo) viewer.forces.set(look.hide, look.solo);
   if (look.floor !== undefined) setFloor(look.floor);
@@ -239,7 +246,7 @@ function apply(look: Look): void {
   redress();
   if (look.up) stage.up = look.up;
   if (look.up || look.turn !== undefined || look.tilt !== undefined) stage.look(look.turn, look.tilt);
-  else if (look.gizmos !== undefined || look.hide || look.solo) stage.frameAll(); // other forces are drawn
+  else if (look.gizmos !== undefined || look.colliders !== undefined || look.hide || look.solo) stage.frameAll(); // other things are drawn
 }
 
 function showLive(text: string, state: string): void {

@@ -1,8 +1,11 @@
-// Numbers of the vertex under the cursor.
+// Numbers of the vertex or collider under the cursor.
 
 import * as THREE from "three";
 
+import { at, type Track, type Vector } from "./bake";
+import type { ColliderView } from "./collider_view";
 import { make } from "./element";
+import type { Playback } from "./playback";
 import type { Stage } from "./stage";
 import type { SurfaceView } from "./surface_view";
 import type { ThemeChoice } from "./theme";
@@ -12,7 +15,8 @@ const manyTriangles = 150_000;
 
 export class Readout {
   views: SurfaceView[] = [];
-  private picked: { view: SurfaceView; vertex: number } | null = null;
+  colliders: ColliderView[] = [];
+  private picked: { view: SurfaceView; vertex: number } | ColliderView | null = null;
   private readonly caster = new THREE.Raycaster();
   private readonly marker = new THREE.Mesh(new THREE.SphereGeometry(1, 16, 10), new THREE.MeshBasicMaterial({ depthTest: false, transparent: true }));
   private pending = 0;
@@ -20,6 +24,7 @@ export class Readout {
   constructor(
     private readonly stage: Stage,
     private readonly output: HTMLOutputElement,
+    private readonly playback: Playback,
     themes: ThemeChoice,
   ) {
     this.marker.name = "picked vertex";
@@ -44,21 +49,42 @@ export class Readout {
     this.update();
   }
 
-  /** Shows the picked vertex at the present frame. */
+  /** Shows what is picked at the present frame. */
   update(): void {
-    this.marker.visible = this.picked !== null;
+    const { picked } = this;
+    this.marker.visible = picked !== null && "vertex" in picked;
     this.stage.invalidate();
-    if (!this.picked) {
-      this.output.replaceChildren();
-      return;
-    }
-    const { view, vertex } = this.picked;
+    if (!picked) return this.tell([]);
+    this.tell("vertex" in picked ? this.linesOfVertex(picked) : this.linesOfCollider(picked));
+  }
+
+  private tell(lines: [string, string][]): void {
+    this.output.replaceChildren(
+      ...lines.map(([label, text]) => make("span", {}, make("span", {}, label), make("b", {}, text))),
+    );
+  }
+
+  private linesOfCollider({ collider: { head }, group }: ColliderView): [string, string][] {
+    const index = this.playback.frame - this.playback.first;
+    const place = new THREE.Vector3().setFromMatrixPosition(group.matrix);
+    const text = (track: Track<number | boolean | Vector>) => {
+      const value = at(track, index);
+      return typeof value === "boolean" ? (value ? "on" : "off") : [value].flat().map(fixed).join(", ");
+    };
+    return [
+      [head.kind, head.name],
+      ["position", place.toArray().map(fixed).join(", ")],
+      ...Object.entries(head.values).map(([name, track]): [string, string] => [name, text(track)]),
+    ];
+  }
+
+  private linesOfVertex({ view, vertex }: { view: SurfaceView; vertex: number }): [string, string][] {
     const { name, columns, rows } = view.surface.head;
     const node = view.surface.nodes[vertex];
     const where = rows > 1 ? `(${node % columns}, ${Math.floor(node / columns)})` : `node ${node}`;
     const place = view.vertex(vertex, this.marker.position);
     this.marker.scale.setScalar(0.0045 * place.distanceTo(this.stage.camera.position));
-    const lines: [string, string][] = [
+    return [
       ["vertex", `${name} ${vertex}${node >= 0 ? ` ${where}` : ""}`],
       ["u, v", `${fixed(view.surface.uvs[2 * vertex])}, ${fixed(view.surface.uvs[2 * vertex + 1])}`],
       ["position", place.toArray().map(fixed).join(", ")],
@@ -66,9 +92,6 @@ export class Readout {
       ["along normal", fixed(view.signed[vertex])],
       ["velocity", `${fixed(view.speed[vertex])} /s`],
     ];
-    this.output.replaceChildren(
-      ...lines.map(([label, text]) => make("span", {}, make("span", {}, label), make("b", {}, text))),
-    );
   }
 
   private request(event: PointerEvent): void {
@@ -81,7 +104,16 @@ export class Readout {
     const box = this.stage.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     this.caster.setFromCamera(at, this.stage.camera);
-    const [hit] = this.caster.intersectObjects(this.views.map((view) => view.mesh), false);
+    const colliders = this.colliders.filter(({ group }) => group.visible);
+    const hits = this.caster.intersectObjects([...this.views, ...colliders].map(({ mesh }) => mesh), false);
+    const isPlane = ({ object }: THREE.Intersection) => colliders.some(({ mesh, collider }) => mesh === object && collider.points.length === 0);
+    const hit = hits.find((each) => !isPlane(each)) ?? hits[0]; // planes can be seen through
+    const collider = colliders.find(({ mesh }) => mesh === hit?.object);
+    if (collider) {
+      this.picked = collider;
+      this.update();
+      return;
+    }
     const view = this.views.find((each) => each.mesh === hit?.object);
     if (!hit?.face || !view) {
       this.clear();

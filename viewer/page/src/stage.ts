@@ -77,14 +77,19 @@ export function fit(camera: THREE.PerspectiveCamera, box: THREE.Box3, from: THRE
   camera.lookAt(center);
 }
 
+/** A round size for cells of which about twenty make the extent. */
+export function roundCell(extent: number): number {
+  const power = 10 ** Math.floor(Math.log10(extent / 10));
+  return [1, 2, 5, 10].map((k) => k * power).find((each) => each >= extent / 20)!;
+}
+
 /** A grid of squares of a round size under a box. */
 export function floorUnder(placed: THREE.Box3, up: THREE.Vector3, axisColour: string, colour: string): THREE.GridHelper {
   const upright = uprightTo(up);
   const box = placed.clone().applyMatrix4(new THREE.Matrix4().makeRotationFromQuaternion(upright.clone().invert()));
   const size = box.getSize(new THREE.Vector3());
   const extent = 1.5 * Math.max(size.x, size.z, 0.3 * size.y, 1e-9);
-  const power = 10 ** Math.floor(Math.log10(extent / 10));
-  const cell = [1, 2, 5, 10].map((k) => k * power).find((each) => each >= extent / 20)!;
+  const cell = roundCell(extent);
   const count = 2 * Math.ceil(extent / cell / 2);
   const grid = new THREE.GridHelper(count * cell, count, axisColour, colour);
   const center = box.getCenter(new THREE.Vector3());

@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-import { at, type BakedSurface } from "./bake";
+import { matrixBetween, type BakedSurface } from "./bake";
 import { bends } from "./relief";
 import { displacementRamp, signedRamp, velocityRamp, type Ramp } from "./ramp";
 import { paintNumbers, pinMaterial, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
@@ -21,12 +21,7 @@ export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: dis
  */
 function placement(surface: BakedSurface, index: number, share: number): THREE.Matrix4 {
   const { origin, transforms } = surface.head;
-  const here = at(transforms, index);
-  const next = at(transforms, index + 1);
-  const t = here.map((number, k) => number + share * ((next?.[k] ?? number) - number));
-  const matrix = new THREE.Matrix4();
-  matrix.set(t[0], t[1], t[2], t[3], t[4], t[5], t[6], t[7], t[8], t[9], t[10], t[11], 0, 0, 0, 1);
-  return matrix.multiply(new THREE.Matrix4().makeTranslation(...origin));
+  return matrixBetween(transforms, index, share, new THREE.Matrix4()).multiply(new THREE.Matrix4().makeTranslation(...origin));
 }
 
 /** Where an arrow along a normal stands. */

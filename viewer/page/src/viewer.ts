@@ -1,8 +1,9 @@
-// A bake on a stage: surfaces, gizmos and regions at the present frame.
+// A bake on a stage: surfaces, colliders, gizmos and regions at the present frame.
 
 import * as THREE from "three";
 
-import { at, type Bake, type Force, type Vector } from "./bake";
+import { at, matrixBetween, type Bake, type BakedCollider, type Force, type Vector } from "./bake";
+import { ColliderView } from "./collider_view";
 import { ForceChoice } from "./force_choice";
 import { Gizmos } from "./gizmos";
 import type { Label } from "./labels";
@@ -18,6 +19,7 @@ export interface Display {
   hasGizmos: boolean;
   hasRegions: boolean;
   hasBoxes: boolean;
+  hasColliders: boolean;
   hasLabels: boolean;
   hasLegend: boolean;
   /** In pictures. */
@@ -29,10 +31,11 @@ export interface Display {
 export class Viewer {
   readonly playback = new Playback();
   readonly stage: Stage;
-  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasLabels: true, hasLegend: true, hasCaption: true, peak: null };
+  readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasColliders: true, hasLabels: true, hasLegend: true, hasCaption: true, peak: null };
   readonly forces = new ForceChoice();
   bake: Bake | null = null;
   views: SurfaceView[] = [];
+  colliders: ColliderView[] = [];
   private regions: RegionView[] = [];
   private gizmos: Gizmos | null = null;
 
@@ -58,9 +61,11 @@ export class Viewer {
     const { head } = bake;
     this.views = bake.surfaces.map((surface) => new SurfaceView(surface, head.fps));
     this.regions = this.views.map((view) => new RegionView(view));
-    const box = boxOf(bake, () => true);
-    this.gizmos = new Gizmos(head.forces, box.getSize(new THREE.Vector3()).length(), box.getCenter(new THREE.Vector3()));
-    this.stage.scene.add(...this.views.map((view) => view.group), this.gizmos.group);
+    const box = boxOf(bake, () => true, () => true);
+    const [reach, middle] = [box.getSize(new THREE.Vector3()).length(), box.getCenter(new THREE.Vector3())];
+    this.gizmos = new Gizmos(head.forces, reach, middle);
+    this.colliders = bake.colliders.map((collider) => new ColliderView(collider, reach, middle));
+    this.stage.scene.add(...[...this.views, ...this.colliders].map((view) => view.group), this.gizmos.group);
     this.stage.bound(box);
     if (isNew && this.goesBothWays()) this.display.colour = "signed";
     this.aim();
@@ -82,11 +87,12 @@ export class Viewer {
     return this.bake?.head.displaced?.[this.playback.frame - this.bake.head.first] ?? 0;
   }
 
-  /** Names of the forces that are drawn now. */
+  /** Names of the forces and colliders that are drawn now. */
   labels(): Label[] {
     const { display } = this;
-    if (!this.bake || !display.hasLabels || !display.hasGizmos) return [];
-    return this.gizmos?.labels(this.playback.frame - this.bake.head.first) ?? [];
+    if (!this.bake || !this.gizmos || !display.hasLabels) return [];
+    const forces = display.hasGizmos ? this.gizmos.labels(this.playback.frame - this.bake.head.first) : [];
+    return [...forces, ...this.colliders.map((view) => view.label()).filter((label) => label !== null)];
   }
 
   /** Call after `display` or the theme has changed. */
@@ -95,6 +101,7 @@ export class Viewer {
     this.stage.colour(palette);
     for (const view of this.views) view.dress(this.display.style, palette);
     for (const region of this.regions) region.colour(palette);
+    for (const collider of this.colliders) collider.colour(palette);
     this.gizmos?.colour(palette);
     this.aim();
     this.show();
@@ -111,7 +118,8 @@ export class Viewer {
   // The camera frames what is drawn.
   private aim(): void {
     const { bake, display, forces } = this;
-    if (bake) this.stage.aim = boxOf(bake, (force) => display.hasGizmos && forces.isShown(force));
+    if (!bake) return;
+    this.stage.aim = boxOf(bake, (force) => display.hasGizmos && forces.isShown(force), ({ head }) => display.hasColliders && forces.isShown(head));
   }
 
   private show(): void {
@@ -130,6 +138,7 @@ export class Viewer {
         if (push) pushes.set(force, push);
       }
     });
+    for (const view of this.colliders) view.show(index, playback.share, display.hasColliders && this.forces.isShown(view.collider.head));
     this.gizmos.group.visible = display.hasGizmos;
     this.gizmos.show(index, playback.share, isShown, pushes, ({ targets }, center, radius, count) => {
       const pushed = this.views.filter(({ surface }) => targets.length === 0 || targets.includes(surface.head.name));
@@ -139,7 +148,7 @@ export class Viewer {
   }
 
   private clear(): void {
-    for (const view of this.views) {
+    for (const view of [...this.views, ...this.colliders]) {
       this.stage.scene.remove(view.group);
       view.dispose();
     }
@@ -152,10 +161,10 @@ export class Viewer {
 }
 
 /**
- * The box around the surfaces over all frames, and around those forces that are shown, near the surfaces, and not about
- * the whole of them.
+ * The box around the surfaces over all frames, around those forces that are shown, near the surfaces, and not about the
+ * whole of them, and around the parts of solids near the surfaces.
  */
-function boxOf(bake: Bake, isShown: (force: Force) => boolean): THREE.Box3 {
+function boxOf(bake: Bake, isShown: (force: Force) => boolean, isThere: (collider: BakedCollider) => boolean): THREE.Box3 {
   const box = new THREE.Box3();
   for (const { low, high } of bake.head.surfaces) box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
   const reach = box.getSize(new THREE.Vector3()).length();
@@ -174,6 +183,12 @@ function boxOf(bake: Bake, isShown: (force: Force) => boolean): THREE.Box3 {
         if (!room.containsPoint(point)) continue;
         box.union(new THREE.Box3().setFromCenterAndSize(point, new THREE.Vector3().setScalar(2 * Math.min(0.7 * radius, 0.2 * reach))).intersect(room));
       }
+    }
+  }
+  for (const collider of bake.colliders.filter(isThere)) {
+    const { enabled, transforms } = collider.head;
+    for (let index = 0; index < bake.frameCount && collider.points.length > 0; ++index) {
+      if (at(enabled, index)) box.union(collider.boxAt(index).applyMatrix4(matrixBetween(transforms, index, 0, new THREE.Matrix4())).intersect(room));
     }
   }
   if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1));
