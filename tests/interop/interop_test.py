@@ -50,6 +50,26 @@ SCENE = """<scene version="1" fps="{fps}" start="1" end="{frames}">
 """
 SURFACES = ("relief-a", "relief_a")
 
+# A sheet and colliders: one grows by its scale, one by its points, one is switched off.
+MET = """<scene version="1" fps="25" start="1" end="{frames}">
+  <surface name="mat"><grid columns="31" rows="31" width="10" depth="10"/><material density="0.002" damping="0.001"/>
+    <solver region="all"/></surface>
+  <collider name="ball-1"><sphere>
+      <animate attribute="radius"><key frame="1" value="0.8"/><key frame="{frames}" value="1.2"/></animate></sphere>
+    <transform scale="-1 1 1"><animate attribute="translate">
+      <key frame="1" value="0 3 0"/><key frame="{frames}" value="1 0.2 -1"/></animate></transform></collider>
+  <collider name="arm"><capsule radius="0.4">
+      <animate attribute="length"><key frame="1" value="1"/><key frame="{frames}" value="3"/></animate></capsule>
+    <transform translate="-3 2 -2"><animate attribute="rotate">
+      <key frame="1" value="0 0 20"/><key frame="{frames}" value="0 40 110"/></animate></transform></collider>
+  <collider name="crate"><animate attribute="enabled"><key frame="1" value="true"/><key frame="6" value="false"/></animate>
+    <box size="1 2 1.5"/><transform translate="-3 2 3" rotate="20 30 40" scale="1 1 2"/></collider>
+  <collider name="pad"><box size="2 1 3" round="0.2"/><transform translate="3 1 2" scale="1 1.5 1"/></collider>
+  <collider name="floor"><plane/><transform translate="0 -1 0"/></collider>
+</scene>
+"""
+SOLIDS = ("ball-1", "arm", "crate", "pad")
+
 # Converts from Blender's axes, +z up: rows times this matrix.
 TO_Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
 
@@ -111,10 +131,13 @@ class Bakes:
         for ending in ("glb", "usda"):
             self.bake("film", f"object.{ending}", "object")
         self.bake("whole", "whole.glb", "object")
+        self.write("met.xml", MET.format(frames=FRAMES))
+        for ending in ("glb", "usda"):
+            self.bake("met", f"met.{ending}", "world")
         self.bake("film", "part.glb", "world", "--frames", "4:9")
         self.bake("film", "part.pc2", "world", "--frames", "4:9")
         self.validated = json.loads(run("node", os.path.join(HERE, "validate_gltf.mjs"), *map(
-            self.path, ("world.glb", "world.gltf", "object.glb", "part.glb"))))
+            self.path, ("world.glb", "world.gltf", "object.glb", "part.glb", "met.glb"))))
         self.seen = {}
         self.ask_blender()
         self.ask_browser()
@@ -139,6 +162,8 @@ class Bakes:
                 {"kind": "gltf", "file": "object.glb", "times": self.times()},
                 {"kind": "gltf", "file": "part.glb", "times": self.times()[:11]},
                 {"kind": "usd", "file": "world.usda"}, {"kind": "usd", "file": "object.usda"},
+                {"kind": "gltf", "file": "met.glb", "times": self.times("whole")[::2]},
+                {"kind": "usd", "file": "met.usda"}, {"kind": "tinyusdz", "file": "met.usda"},
                 {"kind": "tinyusdz", "file": "world.usda"}, {"kind": "tinyusdz", "file": "object.usda"}]
         jobs[0]["picture"] = os.path.join(PICTURES, "three.png")
         for name in SURFACES:
@@ -155,6 +180,8 @@ class Bakes:
         frames = list(range(1, FRAMES + 1))
         jobs = [{"kind": "gltf", "file": "whole.glb", "fps": [25, 1], "times": [k / 2 for k in range(2 * FRAMES - 1)],
                  "picture": os.path.join(PICTURES, "blender.png"), "picture_at": 5},
+                {"kind": "gltf", "file": "met.glb", "fps": [25, 1], "times": list(range(FRAMES)),
+                 "picture": os.path.join(PICTURES, "colliders.png"), "picture_at": 3},
                 # Blender's glTF import knows only whole frame rates; our frames are 24 * 1001/24000
                 # apart.
                 {"kind": "gltf", "file": "world.glb", "fps": [24, 1],
@@ -221,7 +248,7 @@ class Interop(unittest.TestCase):
     # glTF
 
     def test_the_khronos_validator_finds_no_error_or_warning(self):
-        self.assertEqual(len(self.bakes.validated), 4)
+        self.assertEqual(len(self.bakes.validated), 5)
         for report in self.bakes.validated:
             self.assertEqual((report["errors"], report["warnings"], report["messages"]), (0, 0, []), report["file"])
             self.assertEqual((report["animations"], report["morphs"]), (1, True))
@@ -266,6 +293,82 @@ class Interop(unittest.TestCase):
                 else:
                     self.check_split(samples[::2], self.expected(name, kind), 16)
             self.assertEqual(seen["objects"]["relief-a"]["materials"], ["Skin red", "Steel-2"])
+
+    # Colliders
+
+    def value(self, channel, frame):
+        rows_ = run(PLIANT, "curves", self.bakes.path("met.xml"), "--channel", channel).splitlines()[1:]
+        return np.array([float(number) for number in rows_[frame - 1].split(",")[2:]])
+
+    def check_solids(self, points_of):
+        """`points_of` a name and a frame: points in the world, whose chords lie inside."""
+        for frame in range(1, FRAMES + 1):
+            ball = np.linalg.norm(points_of("ball-1", frame) - self.value("ball-1.translate", frame), axis=1)
+            self.assertLess(np.abs(ball - self.value("ball-1.radius", frame)).max(), 1e-5)
+            tilt = np.radians(self.value("arm.rotate", frame)[2])  # the last turn, about z
+            along = np.array([-np.sin(tilt), np.cos(tilt), 0])
+            way = points_of("arm", frame) - [-3, 2, -2]
+            half = self.value("arm.length", frame) / 2
+            nearest = np.clip(way @ along, -half, half)[:, None] * along
+            self.assertLess(np.abs(np.linalg.norm(way - nearest, axis=1) - 0.4).max(), 1e-5)
+            crate = points_of("crate", frame)
+            if frame < 6:
+                corners = np.linalg.norm(crate - [-3, 2, 3], axis=1)
+                self.assertLess(np.abs(corners - np.linalg.norm([0.5, 1, 1.5])).max(), 1e-5)
+            else:  # hidden
+                self.assertLess(len(crate) and np.abs(crate - [-3, 2, 3]).max(), 1e-5)
+            pad = points_of("pad", frame)
+            low, high = pad.min(axis=0), pad.max(axis=0)
+            self.assertLess(np.abs(np.concatenate([low, high]) - [2, 0.25, 0.5, 4, 1.75, 3.5]).max(), 1e-5)
+
+    def test_three_js_and_blender_move_the_colliders_of_gltf(self):
+        seen = self.bakes.seen["browser", "gltf", "met.glb"]["surfaces"]
+        self.assertEqual(sorted(seen), sorted(("mat", *SOLIDS)))
+        self.check_solids(lambda name, frame: rows(seen[name][frame - 1]))
+        blender = self.bakes.seen["blender", "gltf", "met.glb"]
+        self.check_solids(lambda name, frame: rows(blender["positions"][name][frame - 1]) @ TO_Y_UP)
+        for name in SOLIDS:
+            self.assertEqual(blender["objects"][name]["materials"], ["collider"])
+            self.assertEqual(blender["objects"][name]["keys"] > 0, name == "arm")
+
+    def test_three_js_reads_the_colliders_of_usd(self):
+        seen = self.bakes.seen["browser", "usd", "met.usda"]
+        self.assertEqual(seen["complaints"], [])
+        self.assertEqual(len(seen["meshes"]), 1 + len(SOLIDS))
+        with open(self.bakes.path("met.usda"), encoding="utf-8") as file:
+            text = file.read()
+
+        def at(path, frame):
+            """Linear between samples, held outside."""
+            samples = seen["samples"][path]
+            times, values = samples["times"], np.array(samples["values"], dtype=float)
+            values = values.reshape(len(times), -1)
+            return np.array([np.interp(frame, times, column) for column in values.T])
+
+        def placement(name, operation, frame):
+            if f"/scene/{name}.xformOp:{operation}" in seen["samples"]:
+                return at(f"/scene/{name}.xformOp:{operation}", frame)[:3]  # the parser adds a NaN
+            own = text[text.index(f'def Mesh "{name}"'):]
+            found = re.search(rf"xformOp:{operation} = \((.*)\)", own)
+            return np.array([float(number) for number in found[1].split(",")])
+
+        def points_of(name, frame):
+            name = name.replace("-", "_")
+            shown = seen["samples"].get(f"/scene/{name}.visibility")
+            if shown and "invisible" in shown["values"][frame - 1]:
+                return np.empty((0, 3))
+            points = at(f"/scene/{name}.points", frame).reshape(-1, 3) * placement(name, "scale", frame)
+            for axis, angle in enumerate(np.radians(placement(name, "rotateXYZ", frame))):
+                one, other = (axis + 1) % 3, (axis + 2) % 3
+                turned = points.copy()
+                turned[:, one] = np.cos(angle) * points[:, one] - np.sin(angle) * points[:, other]
+                turned[:, other] = np.sin(angle) * points[:, one] + np.cos(angle) * points[:, other]
+                points = turned
+            return points + placement(name, "translate", frame)
+
+        self.check_solids(points_of)
+        self.assertTrue(self.bakes.seen["browser", "tinyusdz", "met.usda"]["is_loaded"])
+        self.assertEqual(len(self.bakes.seen["browser", "tinyusdz", "met.usda"]["meshes"]), 1 + len(SOLIDS))
 
     # Point caches
 
