@@ -11,6 +11,7 @@
 
 #include "pliant/core/stoppable_sort.hpp"
 #include "pliant/feedback/surface_lines.hpp"
+#include "pliant/scene/collider_mesh.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/colliders.hpp"
@@ -200,21 +201,29 @@ Json messages_of(const Simulation& simulation) {
 
 Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
                           std::size_t max_memory) {
-  std::size_t vertex_count = moving_vertices(simulation.scene());
+  const double solids = static_cast<double>(simulation.scene().colliders.size()) *
+                        static_cast<double>(ColliderMesh::most_bytes);
+  std::size_t vertex_count =
+      solids > static_cast<double>(max_memory) ? 0 : moving_vertices(simulation.scene());
   for (const RestShape& shape : simulation.rest_shapes()) {
     const int motions = shape.animation ? 2 : 1;
     vertex_count += static_cast<std::size_t>(motions) * shape.mesh.vertex_count();
   }
   // In addition to the packer's memory: the packed stream and its text in the page.
-  const double bytes = static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
-                       static_cast<double>(MotionPacker::bytes_a_vertex + 14);
+  const double bytes = solids + static_cast<double>(frames.count()) *
+                                    static_cast<double>(vertex_count) *
+                                    static_cast<double>(MotionPacker::bytes_a_vertex + 14);
   const double free = static_cast<double>(max_memory) -
                       static_cast<double>(std::min(max_memory, simulation.surface_memory()));
   if (bytes <= free) return {};
+  const std::size_t count = simulation.scene().colliders.size();
+  const std::string colliders =
+      count == 0 ? "" : fmt::format(" and {} collider{}", count, count == 1 ? "" : "s");
   return fail(ErrorCode::OutOfMemory,
-              fmt::format("a page of {} frames of {} vertices needs {}, more than the {} left of "
+              fmt::format("a page of {} frames of {} vertices{} needs {}, more than the {} left of "
                           "--max-memory; choose fewer frames with --frames A:B",
-                          frames.count(), vertex_count, bytes_text(static_cast<std::size_t>(bytes)),
+                          frames.count(), vertex_count, colliders,
+                          bytes_text(static_cast<std::size_t>(bytes)),
                           bytes_text(static_cast<std::size_t>(free))));
 }
 

@@ -143,14 +143,18 @@ struct Output {
 };
 
 Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
-                           const FrameSpan& frames) {
+                           const FrameSpan& frames, std::size_t max_memory) {
   const auto chosen = chosen_surfaces(simulation, options);
   if (!chosen) return fail(chosen.error());
   auto plan = make_plan(simulation, options, frames, *chosen);
   if (!plan) return fail(plan.error());
   ColliderMeshes colliders;
-  if (!options.omits_colliders)
-    colliders = ColliderMeshes(simulation.scene(), plan->surfaces, frames.first);
+  if (!options.omits_colliders) {
+    const std::size_t used = std::min(max_memory, simulation.surface_memory());
+    auto made = ColliderMeshes::make(simulation.scene(), *plan, max_memory - used);
+    if (!made) return fail(made.error());
+    colliders = *std::move(made);
+  }
   plan->colliders = colliders.surfaces();
   if (auto checked = check_overwrites(*plan, simulation.scene()); !checked)
     return fail(checked.error());
@@ -370,7 +374,7 @@ int run_bake(const BakeOptions& options, const BakeSource& source) {
   if (options.checks_dt) run.max_memory /= 2;  // for each of the two runs
   auto simulation = Simulation::make(*std::move(scene), run);
   if (!simulation) return report(with_kept(simulation.error(), "no file was written"));
-  auto output = open_output(*simulation, options, *frames);
+  auto output = open_output(*simulation, options, *frames, run.max_memory);
   if (!output) return report(with_kept(output.error(), "no file was written"));
 
   std::optional<DtCheck> check;

@@ -81,10 +81,21 @@ TEST_CASE("colliders are written with the surfaces they meet", "[scene][collider
   const Mesh mesh;
   const auto names = [&](std::vector<AnimatedSurface> surfaces) {
     std::string all;
-    for (const AnimatedSurface& each : ColliderMeshes(scene, surfaces, 1).surfaces())
-      all += each.name + ' ';
+    const AnimationPlan plan{.file = "a.glb", .surfaces = surfaces, .first_frame = 1};
+    const ColliderMeshes meshes = ColliderMeshes::make(scene, plan, 1 << 30).value();
+    for (const AnimatedSurface& each : meshes.surfaces()) all += each.name + ' ';
     return all;
   };
   CHECK(names({{"mat", &mesh, {}}}) == "ball arm crate gate ");
   CHECK(names({{"mat", &mesh, {}}, {"rug", &mesh, {}}}) == "ball arm crate pad gate ");
+  // Within memory, and none in formats that do not contain them.
+  AnimationPlan plan{.file = "a.glb", .surfaces = {{"mat", &mesh, {}}}};
+  const std::size_t enough = 4 * ColliderMesh::most_bytes;
+  CHECK(ColliderMeshes::make(scene, plan, enough));
+  const auto refused = ColliderMeshes::make(scene, plan, enough - 1);
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().code == ErrorCode::OutOfMemory);
+  CHECK_THAT(refused.error().message, contains_text("--no-colliders"));
+  plan.file = "a.obj";
+  CHECK(ColliderMeshes::make(scene, plan, 0).value().surfaces().empty());
 }

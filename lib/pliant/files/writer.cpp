@@ -133,6 +133,12 @@ Result<void> check_ending(const std::string& file) {
                           fmt::join(known_endings(), ", ")));
 }
 
+bool contains_colliders(const std::string& file) {
+  const Format* const format = find_format(file);
+  PLIANT_EXPECTS(format);
+  return format->make_writer != nullptr;
+}
+
 std::optional<PrecisionLoss> precision_loss_in(const Vector3d& low, const Vector3d& high) {
   constexpr double rounding = 0x1p-24;  // of a number, half a unit in the last place at most
   const double error = rounding * std::max(low.cwiseAbs().maxCoeff(), high.cwiseAbs().maxCoeff());

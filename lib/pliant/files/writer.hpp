@@ -73,6 +73,9 @@ std::vector<std::string> known_endings();
 /// Whether the file's ending is that of a format. Errors: InvalidInput, listing the endings.
 Result<void> check_ending(const std::string& file);
 
+/// Whether its format contains colliders. Requires: check_ending(file).
+bool contains_colliders(const std::string& file);
+
 /// What single precision does to vertices in a box that is far from the origin.
 struct PrecisionLoss {
   std::size_t surface = 0;  ///< of a plan

@@ -1,8 +1,14 @@
 #include "pliant/scene/collider_mesh.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string_view>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
+
+#include "pliant/core/memory_budget.hpp"
 
 namespace pliant {
 namespace {
@@ -36,11 +42,10 @@ SolidLengths lengths_at(const Collider& collider, int frame) {
 
 bool is_sharp(const BoxChannels& box) { return box.round == Channel<1>(0); }
 
-bool targets_one_of(const Collider& collider, std::span<const AnimatedSurface> surfaces) {
+bool targets_one_of(const Collider& collider, const std::set<std::string_view>& surfaces) {
   return collider.targets.empty() ||
-         std::ranges::any_of(surfaces, [&](const AnimatedSurface& surface) {
-           return std::ranges::find(collider.targets, surface.name) != collider.targets.end();
-         });
+         std::ranges::any_of(collider.targets,
+                             [&](const std::string& target) { return surfaces.contains(target); });
 }
 
 }  // namespace
@@ -102,12 +107,24 @@ SurfacePose ColliderMesh::at(int frame) const {
   return pose;
 }
 
-ColliderMeshes::ColliderMeshes(const Scene& scene, std::span<const AnimatedSurface> surfaces,
-                               int first_frame) {
+Result<ColliderMeshes> ColliderMeshes::make(const Scene& scene, const AnimationPlan& plan,
+                                            std::size_t free_memory) {
+  ColliderMeshes made;
+  if (!contains_colliders(plan.file)) return made;
+  std::set<std::string_view> surfaces;
+  for (const AnimatedSurface& surface : plan.surfaces) surfaces.insert(surface.name);
   for (const Collider& collider : scene.colliders) {
     if (!targets_one_of(collider, surfaces)) continue;
-    if (auto mesh = ColliderMesh::make(collider, first_frame)) meshes_.push_back(*std::move(mesh));
+    auto mesh = ColliderMesh::make(collider, plan.first_frame);
+    if (!mesh) continue;
+    made.meshes_.push_back(*std::move(mesh));
+    if (made.meshes_.size() <= free_memory / ColliderMesh::most_bytes) continue;
+    return fail(ErrorCode::OutOfMemory,
+                fmt::format("{}: the colliders need more than the {} left of --max-memory to be "
+                            "written; pliant bake --no-colliders leaves them out",
+                            plan.file, bytes_text(free_memory)));
   }
+  return made;
 }
 
 std::vector<AnimatedSurface> ColliderMeshes::surfaces() const {

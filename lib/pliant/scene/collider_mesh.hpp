@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
+#include "pliant/core/result.hpp"
 #include "pliant/files/writer.hpp"
 #include "pliant/mesh/solid_mesh.hpp"
 #include "pliant/scene/scene.hpp"
@@ -15,6 +15,9 @@ namespace pliant {
 /// it.
 class ColliderMesh {
  public:
+  /// Of one, with what a writer keeps of it, at most. [bytes]
+  static constexpr std::size_t most_bytes = std::size_t{1} << 18U;
+
   /// None: a plane, which has no end. Requires: `collider` outlives it; `check_channels` accepts it
   /// at all frames asked for.
   static std::optional<ColliderMesh> make(const Collider& collider, int first_frame);
@@ -41,8 +44,11 @@ class ColliderMesh {
 class ColliderMeshes {
  public:
   ColliderMeshes() = default;
-  /// Requires: `scene` outlives it.
-  ColliderMeshes(const Scene& scene, std::span<const AnimatedSurface> surfaces, int first_frame);
+
+  /// Those that target a surface of the plan, if its format contains colliders. Errors:
+  /// OutOfMemory if they need more than `free_memory` [bytes]. Requires: `scene` outlives it.
+  static Result<ColliderMeshes> make(const Scene& scene, const AnimationPlan& plan,
+                                     std::size_t free_memory);
 
   std::vector<AnimatedSurface> surfaces() const;  ///< valid while this is
   std::vector<SurfacePose> at(int frame) const;

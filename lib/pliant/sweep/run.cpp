@@ -34,7 +34,7 @@ std::size_t share_of(std::size_t count, std::size_t max_memory) {
 class TakeWriter {
  public:
   static Result<TakeWriter> make(const Simulation& simulation, const FrameSpan& frames,
-                                 const std::string& file) {
+                                 const std::string& file, std::size_t max_memory) {
     const Scene& scene = simulation.scene();
     AnimationPlan plan{
         .file = file, .first_frame = frames.first, .last_frame = frames.last, .fps = scene.fps};
@@ -46,11 +46,13 @@ class TakeWriter {
                                .rest = to_world(transform, shape.mesh.positions),
                                .is_mirrored = transform.is_mirrored()});
     }
-    ColliderMeshes colliders(scene, plan.surfaces, frames.first);
-    plan.colliders = colliders.surfaces();
+    const std::size_t used = std::min(max_memory, simulation.surface_memory());
+    auto colliders = ColliderMeshes::make(scene, plan, max_memory - used);
+    if (!colliders) return fail(colliders.error());
+    plan.colliders = colliders->surfaces();
     auto writer = make_writer(plan);
     if (!writer) return fail(writer.error());
-    return TakeWriter(*std::move(writer), std::move(colliders), scene.surfaces.size());
+    return TakeWriter(*std::move(writer), *std::move(colliders), scene.surfaces.size());
   }
 
   Result<void> write(const Frame& frame) {
@@ -79,7 +81,7 @@ Result<Measures> play(Simulation& simulation, const FrameSpan& frames, const Tak
   PLIANT_EXPECTS(options.file.empty() || !options.watch);
   std::optional<TakeWriter> writer;
   if (!options.file.empty()) {
-    auto made = TakeWriter::make(simulation, frames, options.file);
+    auto made = TakeWriter::make(simulation, frames, options.file, options.max_memory);
     if (!made) return fail(made.error());
     writer.emplace(*std::move(made));
   }
