@@ -1,5 +1,6 @@
 #include "pliant/contact/collider.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -27,6 +28,9 @@ Solid scaled(BoxSolid box, const Vector3d& scale) {
   return box;
 }
 Solid scaled(const PlaneSolid& plane, const Vector3d&) { return plane; }
+Solid scaled(const MeshSolid& mesh, const Vector3d& scale) {
+  return MeshSolid{PosedMesh::scaled(mesh.posed, scale)};
+}
 
 }  // namespace
 
@@ -51,6 +55,28 @@ Placement between(const Placement& first, const Placement& last, double a) {
           mix(first.scale, last.scale, a), first.order};
 }
 
+bool has_moving_mesh(const SampledCollider& collider) {
+  const auto* const first = std::get_if<MeshSolid>(&collider.first.shape);
+  if (!first) return false;
+  return collider.first.placement.scale != collider.last.placement.scale ||
+         first->posed != std::get<MeshSolid>(collider.last.shape).posed;
+}
+
+double mesh_way_of(const SampledCollider& collider) {
+  if (!has_moving_mesh(collider)) return 0;
+  const Field& first = std::get<MeshSolid>(collider.first.shape).posed->points();
+  const Field& last = std::get<MeshSolid>(collider.last.shape).posed->points();
+  const Vector3d &from = collider.first.placement.scale, &to = collider.last.placement.scale;
+  Vector3d most;
+  for (int k = 0; k < 3; ++k) {
+    const double largest = std::max(std::abs(from[k]), std::abs(to[k]));
+    most[k] = largest * (last.col(k) - first.col(k)).cwiseAbs().maxCoeff() +
+              std::abs(to[k] - from[k]) *
+                  std::max(first.col(k).cwiseAbs().maxCoeff(), last.col(k).cwiseAbs().maxCoeff());
+  }
+  return length_of(most.transpose()) * (1 + 1e-9);
+}
+
 PlacedCollider placed(const SampledCollider& collider, double a) {
   const auto& [first, last] = std::tie(collider.first, collider.last);
   const Placement placement = between(first.placement, last.placement, a);
@@ -62,7 +88,8 @@ PlacedCollider placed(const SampledCollider& collider, double a) {
   return {
       frame.linear,
       frame.translation,
-      {std::visit([&](const auto& kind) { return scaled(kind, placement.scale); }, shape), offset}};
+      {std::visit([&](const auto& kind) { return scaled(kind, placement.scale); }, shape), offset},
+      a * mesh_way_of(collider)};
 }
 
 }  // namespace pliant

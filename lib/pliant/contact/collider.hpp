@@ -7,9 +7,11 @@ namespace pliant {
 
 /// A collider at one moment, in the world.
 struct PlacedCollider {
-  Matrix3d rotation;     ///< of its frame, in which its solid is
-  Vector3d translation;  ///< [length]
-  Kept kept;
+  Matrix3d rotation = Matrix3d::Identity();  ///< of its frame, in which its solid is
+  Vector3d translation = {0, 0, 0};          ///< [length]
+  Kept kept = {};
+  double mesh_way =
+      0;  ///< no point of its mesh went farther in its frame, since the frame [length]
 
   Vector3d to_frame(const Vector3d& world) const;
   Vector3d to_world(const Vector3d& x) const;
@@ -38,6 +40,12 @@ struct SampledCollider {
 /// The collider at part `a` of its way: each number of its pose (1 - a) of the first and a of the
 /// last.
 PlacedCollider placed(const SampledCollider& collider, double a);
+
+/// Whether it is a mesh whose points move in its frame: then `placed` makes a pose of it.
+bool has_moving_mesh(const SampledCollider& collider);
+
+/// No point of its mesh goes farther in its frame, on the way to the next frame. [length]
+double mesh_way_of(const SampledCollider& collider);
 
 /// A placement between two, number by number.
 Placement between(const Placement& first, const Placement& last, double a);

@@ -17,10 +17,40 @@ double volume(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
+// How far a place is from a box that is around another one; 0 within it.
+double distance_to(const PosedMesh::Box& box, const Vector3d& x) {
+  Vector3d way;
+  for (int k = 0; k < 3; ++k) way[k] = std::max({box.low[k] - x[k], x[k] - box.high[k], 0.0});
+  return length_of(way.transpose());
+}
+
+// The same as below. The distance where it was looked at, less the ways since, is no more than that
+// now.
+bool stays_away_from_mesh(const PlacedCollider& from, const PlacedCollider& to, const Vector3d& x0,
+                          const Vector3d& x1, NearMesh& near) {
+  const PosedMesh &mesh = *std::get<MeshSolid>(from.kept.solid).posed,
+                  &next = *std::get<MeshSolid>(to.kept.solid).posed;
+  const double most = (length_of((x1 - x0).transpose()) + to.mesh_way - from.mesh_way +
+                       std::abs(to.kept.offset - from.kept.offset)) *
+                          (1 + 1e-9) +
+                      1e-12 * mesh.diagonal() + from.kept.offset;
+  if (distance_to(mesh.box(0), x0) > most) return true;
+  if (near.triangle >= 0 &&
+      near.distance - (length_of((x0 - near.place).transpose()) + from.mesh_way - near.mesh_way) *
+                          (1 + 1e-9) >
+          most)
+    return true;
+  const MeshNearness found = MeshWay(mesh, next).nearness(x0, 0, near.triangle);
+  near = {found.foot.triangle, x0, found.distance, from.mesh_way};
+  return found.distance > most;
+}
+
 // Whether a node is so far from a solid that it does not come near it: a distance changes at most
 // as much as the node moves in the solid's frame, and the solid grows.
 bool stays_away(const PlacedCollider& from, const PlacedCollider& to, const Vector3d& x0,
-                const Vector3d& x1) {
+                const Vector3d& x1, NearMesh& near_mesh) {
+  if (std::holds_alternative<MeshSolid>(from.kept.solid))
+    return stays_away_from_mesh(from, to, x0, x1, near_mesh);
   const double growth = std::visit(
       [&]<class Kind>(const Kind& kind) {
         const auto& last = std::get<Kind>(to.kept.solid);
@@ -29,7 +59,7 @@ bool stays_away(const PlacedCollider& from, const PlacedCollider& to, const Vect
           return std::abs(last.radius - kind.radius) + std::abs(last.length - kind.length);
         if constexpr (std::is_same_v<Kind, BoxSolid>)
           return length_of(last.size - kind.size) + 3 * std::abs(last.round - kind.round);
-        return 0.0;
+        return 0.0;  // a mesh is looked at below
       },
       from.kept.solid);
   const double most = length_of(x1 - x0) + growth + std::abs(to.kept.offset - from.kept.offset);
@@ -39,8 +69,7 @@ bool stays_away(const PlacedCollider& from, const PlacedCollider& to, const Vect
 NodeRow row_at(const PlacedCollider& to, const Contact& contact) {
   NodeRow row;
   row.normal = to.turned(contact.normal);
-  row.height =
-      support(to.kept.solid, contact.normal) + to.kept.offset + dot_of(row.normal, to.translation);
+  row.height = contact.support + to.kept.offset + dot_of(row.normal, to.translation);
   row.place = to.to_world(contact.place);
   return row;
 }
@@ -50,20 +79,22 @@ NodeRow row_at(const PlacedCollider& to, const Contact& contact) {
 double NodeRow::lack(const Vector3d& at) const { return height - dot_of(normal, at); }
 
 std::optional<NodeRow> row_of(const PlacedCollider& from, const PlacedCollider& to,
-                              const Vector3d& before, const Vector3d& after, double slack) {
+                              const Vector3d& before, const Vector3d& after, double slack,
+                              NearMesh* near_mesh) {
+  NearMesh unknown;
+  NearMesh& near = near_mesh ? *near_mesh : unknown;
   const Vector3d x0 = from.to_frame(before), x1 = to.to_frame(after);
-  if (stays_away(from, to, x0, x1)) return std::nullopt;
-  const auto contact = first_contact(from.kept, to.kept, x0, x1, slack);
+  if (stays_away(from, to, x0, x1, near)) return std::nullopt;
+  const auto contact = first_contact(from.kept, to.kept, x0, x1, slack, near.triangle);
   if (!contact) return std::nullopt;
   return row_at(to, *contact);
 }
 
 std::optional<NodeRow> lying_row_of(const PlacedCollider& from, const PlacedCollider& to,
                                     const Vector3d& before, double near) {
-  const Vector3d x = from.to_frame(before);
-  const Nearness nearest = nearness(from.kept, x);
-  if (!(std::abs(nearest.distance) <= near)) return std::nullopt;
-  return row_at(to, {nearest.normal, x - nearest.distance * nearest.normal});
+  const auto contact = lying_contact(from.kept, to.kept, from.to_frame(before), near);
+  if (!contact) return std::nullopt;
+  return row_at(to, *contact);
 }
 
 const NodeRow* NodeRows::squeezer_of(const NodeRow& row) const {

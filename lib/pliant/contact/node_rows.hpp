@@ -20,10 +20,20 @@ struct NodeRow {
   double lack(const Vector3d& at) const;  ///< how far a node there is outside [length]
 };
 
+/// What is known of how near a node is to a mesh, so that it need not be looked for again. No row
+/// depends on it.
+struct NearMesh {
+  int triangle = -1;           ///< that is near; -1: nothing is known
+  Vector3d place = {0, 0, 0};  ///< in the collider's frame
+  double distance = 0;         ///< there
+  double mesh_way = 0;         ///< as of the collider, then
+};
+
 /// The row of a node that touches on its way from `before` to `after`, world; null: it does not.
 /// docs/model.md, "Contact".
 std::optional<NodeRow> row_of(const PlacedCollider& from, const PlacedCollider& to,
-                              const Vector3d& before, const Vector3d& after, double slack);
+                              const Vector3d& before, const Vector3d& after, double slack,
+                              NearMesh* near_mesh = nullptr);
 
 /// The row of a node that lies on a solid as a step begins, nearer than `near`: at its closest
 /// point; null: it does not.

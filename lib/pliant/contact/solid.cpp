@@ -46,6 +46,11 @@ Nearness near_to(const BoxSolid& box, const Vector3d& x) {
 
 Nearness near_to(const PlaneSolid&, const Vector3d& x) { return {x[1], Vector3d::UnitY()}; }
 
+Nearness near_to(const MeshSolid& mesh, const Vector3d& x) {
+  const MeshNearness near = MeshWay(*mesh.posed, *mesh.posed).nearness(x, 0);
+  return {near.distance, near.normal};
+}
+
 double support_of(const SphereSolid& sphere, const Vector3d&) { return sphere.radius; }
 double support_of(const CapsuleSolid& capsule, const Vector3d& n) {
   return std::abs(n[1]) * (capsule.length / 2) + capsule.radius;
@@ -56,6 +61,13 @@ double support_of(const BoxSolid& box, const Vector3d& n) {
   return sum + box.round;
 }
 double support_of(const PlaneSolid&, const Vector3d&) { return 0; }
+double support_of(const MeshSolid& mesh, const Vector3d& n) {
+  const Field& points = mesh.posed->points();
+  double most = -std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < points.rows(); ++k)
+    most = std::max(most, dot_of(n, points.row(k).transpose()));
+  return most;
+}
 
 double mix(double one, double other, double t) {
   return one == other ? one : (1 - t) * one + t * other;
@@ -74,6 +86,13 @@ BoxSolid mix(const BoxSolid& a, const BoxSolid& b, double t) {
   return between;
 }
 PlaneSolid mix(const PlaneSolid& plane, const PlaneSolid&, double) { return plane; }
+MeshSolid mix(const MeshSolid& a, const MeshSolid& b, double t) {
+  if (t == 0 || a == b) return a;
+  if (t == 1) return b;
+  return {std::make_shared<const PosedMesh>(a.posed->shared_mesh(),
+                                            (1 - t) * a.posed->points() + t * b.posed->points(),
+                                            a.posed->is_mirrored())};
+}
 
 }  // namespace
 
@@ -99,6 +118,10 @@ double reach(const Solid& solid) {
     }
     double operator()(const BoxSolid& box) const { return length_of(box.size) / 2; }
     double operator()(const PlaneSolid&) const { return std::numeric_limits<double>::infinity(); }
+    double operator()(const MeshSolid& mesh) const {
+      const PosedMesh::Box& box = mesh.posed->box(0);
+      return length_of(box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).transpose());
+    }
   };
   return std::visit(Reach(), solid);
 }
@@ -114,6 +137,7 @@ double least_radius(const Solid& solid) {
     double operator()(const CapsuleSolid& capsule) const { return capsule.radius; }
     double operator()(const BoxSolid& box) const { return box.round; }
     double operator()(const PlaneSolid&) const { return std::numeric_limits<double>::infinity(); }
+    double operator()(const MeshSolid&) const { return 0; }
   };
   return std::visit(Radius(), solid);
 }

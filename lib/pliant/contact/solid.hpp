@@ -1,7 +1,9 @@
 #pragma once
 
+#include <memory>
 #include <variant>
 
+#include "pliant/contact/solid_mesh.hpp"
 #include "pliant/core/field.hpp"
 
 namespace pliant {
@@ -37,7 +39,17 @@ struct PlaneSolid {
   friend bool operator==(const PlaneSolid&, const PlaneSolid&) = default;
 };
 
-using Solid = std::variant<SphereSolid, CapsuleSolid, BoxSolid, PlaneSolid>;
+/// What a closed mesh encloses. It need not be convex.
+struct MeshSolid {
+  std::shared_ptr<const PosedMesh> posed;
+
+  friend bool operator==(const MeshSolid& a, const MeshSolid& b) {
+    return a.posed == b.posed || (a.posed->shared_mesh() == b.posed->shared_mesh() &&
+                                  are_equal(a.posed->points(), b.posed->points()));
+  }
+};
+
+using Solid = std::variant<SphereSolid, CapsuleSolid, BoxSolid, PlaneSolid, MeshSolid>;
 
 /// How near a place is to a solid.
 struct Nearness {
@@ -46,25 +58,27 @@ struct Nearness {
 };
 
 /// Where the gradient is not unique, it is +y at a sphere's centre, +x on a capsule's axis, and
-/// that of the face of least depth inside a box (x before y before z, + before -). Requires: x is
-/// finite.
+/// that of the face of least depth inside a box (x before y before z, + before -), and that by the
+/// first of the triangles that are equally close of a mesh. Requires: x is finite.
 Nearness nearness(const Solid& solid, const Vector3d& x);
 
 /// The support function: the largest n . y of the solid's places y; of a plane for n = +y.
 /// [length]
 double support(const Solid& solid, const Vector3d& n);
 
-/// The solid between two of one kind, each length (1 - t) of one and t of the other. The support in
-/// each direction is then as much of theirs.
+/// The solid between two of one kind, each length (1 - t) of one and t of the other, and each point
+/// of a mesh. The support of what is no mesh is then as much of theirs in each direction.
 Solid between(const Solid& one, const Solid& other, double t);
 
 /// No place of the solid is farther from the origin. Infinite for a plane. [length]
 double reach(const Solid& solid);
 
-/// Of the largest ball inside it, infinite for a plane. [length]
+/// Of the largest ball inside it, infinite for a plane; of a mesh 0, since it is not looked for.
+/// [length]
 double inner_radius(const Solid& solid);
 
-/// The least radius of its curvature, infinite for a plane, 0 for a box with sharp edges. [length]
+/// The least radius of its curvature, infinite for a plane, 0 for a box with sharp edges or a mesh.
+/// [length]
 double least_radius(const Solid& solid);
 
 }  // namespace pliant

@@ -25,6 +25,11 @@ inline double dot_of(const Vector3d& a, const Vector3d& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// The vector across two others, by the right-hand rule. A fixed order of its terms.
+inline Vector3d cross_of(const Vector3d& a, const Vector3d& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
 /// The longest vector of a field.
 struct LongestVector {
   double length = 0;     ///< finite if the vector is, whatever its square is

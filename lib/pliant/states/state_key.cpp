@@ -170,6 +170,11 @@ class HashedValues {
     add_all(size, round);
   }
   void add(const PlaneSolid&) {}
+  void add(const MeshSolid& mesh) {
+    add(mesh.posed->mesh().hash());
+    add(hash_of(mesh.posed->points()));
+    add(int{mesh.posed->is_mirrored()});
+  }
   void add(const ColliderPose& pose) {
     const auto& [shape, placement, offset] = pose;
     add(std::uint64_t{shape.index()});

@@ -8,7 +8,8 @@
 
 namespace pliant {
 
-Result<PointTree> PointTree::make(const Field& points, const StopRequest& should_stop) {
+Result<PointTree> PointTree::make(const Field& points, const StopRequest& should_stop,
+                                  int most_of_leaf) {
   PointTree tree;
   if (points.rows() == 0) return tree;
   StopPoll poll(should_stop);
@@ -28,7 +29,7 @@ Result<PointTree> PointTree::make(const Field& points, const StopRequest& should
         cluster.high[axis] = std::max(cluster.high[axis], points(*row, axis));
       }
     }
-    if (cluster.count > leaf_size) {
+    if (cluster.count > most_of_leaf) {
       int widest = 0;
       const Vector3d extent = cluster.high - cluster.low;
       for (int axis = 1; axis < 3; ++axis) widest = extent[axis] > extent[widest] ? axis : widest;

@@ -12,7 +12,7 @@ namespace pliant {
 /// on the points and their order only.
 class PointTree {
  public:
-  /// The most points of a leaf.
+  /// The most points of a leaf, if not told otherwise.
   static constexpr int leaf_size = 32;
 
   /// The points [first, first + count) of `points`, in their smallest box.
@@ -29,7 +29,8 @@ class PointTree {
   PointTree() = default;
 
   /// Requires: `points` is #points x 3, finite. Errors: Interrupted. Cost: O(#points log #points).
-  static Result<PointTree> make(const Field& points, const StopRequest& should_stop);
+  static Result<PointTree> make(const Field& points, const StopRequest& should_stop,
+                                int most_of_leaf = leaf_size);
 
   explicit PointTree(const Field& points) : PointTree(*make(points, {})) {}
 
