@@ -171,14 +171,15 @@ Result<void> GridBody::plan(const BodyInputs& inputs, Room& room, StepPlan& plan
 void GridBody::find_met(const BodyInputs& inputs, const StepPlan& plan,
                         std::vector<Box>& boxes) const {
   const ContactPlaces places(inputs, rest_at(inputs), plan.steps.count);
+  const Field displacement = state_.positions - rest_;
   for (std::size_t c = 0; c < inputs.colliders.size(); ++c) {
+    const std::vector<double> depths = places.depths(c, displacement);
     LineMarks lines(grid_);
     Box box;
     for (int j = 0; j < grid_.rows; ++j) {
       for (int i = 0; i < grid_.columns; ++i) {
         const int node = grid_.node(i, j);
-        const Vector3d w = (state_.positions.row(node) - rest_.row(node)).transpose();
-        if (!(places.depth(c, node, w) > 0)) continue;
+        if (!(depths[static_cast<std::size_t>(node)] > 0)) continue;
         box.include(i, j);
         if (!grid_.is_open()) lines.include(i, j);
       }

@@ -32,7 +32,11 @@ ContactPlaces::ContactPlaces(const BodyInputs& inputs, const Field& rest, int st
   for (int step = 0; step <= step_count; ++step) {
     const double a = double(step) / step_count;
     std::vector<PlacedCollider>& all = colliders_.emplace_back();
-    for (const SampledCollider& collider : inputs.colliders) all.push_back(placed(collider, a));
+    for (const SampledCollider& collider : inputs.colliders) {
+      const bool is_later = has_moving_mesh(collider);
+      all.push_back(is_later ? PlacedCollider() : placed(collider, a));
+      if (is_later && step == 0) moving_meshes_.push_back(all.size() - 1);
+    }
     const bool moves = motion && step > 0 && !(motion->first == motion->last);
     transforms_.push_back(moves ? make_transform(between(motion->first, motion->last, a))
                                 : inputs.transform);
@@ -47,15 +51,39 @@ Vector3d ContactPlaces::rest(int step, int node) const {
   return (1 - a) * now + a * next;
 }
 
-double ContactPlaces::depth(std::size_t collider, int node, const Vector3d& displacement) const {
-  const double radius = inputs_->colliders[collider].deformation_radius;
-  double depth = -std::numeric_limits<double>::infinity();
-  for (int step = 0; step <= step_count(); ++step) {
-    const PlacedCollider& one = colliders_[step][collider];
-    const Vector3d p = to_world(transforms_[step], Vector3d(rest(step, node) + displacement));
-    depth = std::max(depth, radius - std::max(0.0, nearness(one.kept, one.to_frame(p)).distance));
+// A frame may have many steps: only the last ones are kept.
+void ContactPlaces::pose(int step) {
+  constexpr std::size_t most_posed = 8;
+  if (moving_meshes_.empty()) return;
+  for (const int at : {step, step + 1}) {
+    if (at > step_count() || std::ranges::find(posed_, at) != posed_.end()) continue;
+    if (posed_.size() == most_posed) {
+      for (const std::size_t k : moving_meshes_) colliders_[posed_.front()][k] = {};
+      posed_.erase(posed_.begin());
+    }
+    for (const std::size_t k : moving_meshes_)
+      colliders_[at][k] = placed(inputs_->colliders[k], double(at) / step_count());
+    posed_.push_back(at);
   }
-  return depth;
+}
+
+std::vector<double> ContactPlaces::depths(std::size_t collider, const Field& displacement) const {
+  const SampledCollider& sampled = inputs_->colliders[collider];
+  const bool is_later = has_moving_mesh(sampled);
+  std::vector<double> depths(static_cast<std::size_t>(displacement.rows()),
+                             -std::numeric_limits<double>::infinity());
+  for (int step = 0; step <= step_count(); ++step) {
+    const PlacedCollider one =
+        is_later ? placed(sampled, double(step) / step_count()) : colliders_[step][collider];
+    for (Eigen::Index k = 0; k < displacement.rows(); ++k) {
+      const Vector3d w = displacement.row(k).transpose();
+      const Vector3d p = to_world(transforms_[step], Vector3d(rest(step, static_cast<int>(k)) + w));
+      const double distance = nearness(one.kept, one.to_frame(p)).distance;
+      double& depth = depths[static_cast<std::size_t>(k)];
+      depth = std::max(depth, sampled.deformation_radius - std::max(0.0, distance));
+    }
+  }
+  return depths;
 }
 
 const Field* ContactPlaces::next_rest() const {
@@ -77,6 +105,41 @@ void SurfaceContact::begin_frame(ContactPlaces places,
   }
   moves_.assign(static_cast<std::size_t>(places_.first_rest().rows()), 0);
   pushes_.clear();
+  keep_near_meshes();
+}
+
+// What is known of a mesh holds in the next frame too, if that begins with it as this one ended.
+void SurfaceContact::keep_near_meshes() {
+  if (sampled_.empty()) return;  // a frame without contact, or that has not begun
+  const bool has_mesh = std::ranges::any_of(sampled_, [](const SampledCollider& one) {
+    return std::holds_alternative<MeshSolid>(one.first.shape);
+  });
+  if (!has_mesh) {
+    near_meshes_.clear();
+    last_meshes_.clear();
+    return;
+  }
+  const auto count = static_cast<std::size_t>(places_.first_rest().rows());
+  if (near_meshes_.size() != sampled_.size() * count) {
+    near_meshes_.assign(sampled_.size() * count, {});
+    last_meshes_.assign(sampled_.size(), {});
+  }
+  for (std::size_t c = 0; c < sampled_.size(); ++c) {
+    const auto [first, last] = std::pair(sampled_[c].first, sampled_[c].last);
+    const auto* const mesh = std::get_if<MeshSolid>(&first.shape);
+    LastMesh& before = last_meshes_[c];
+    const bool goes_on =
+        mesh && before.posed == mesh->posed && before.scale == first.placement.scale;
+    const std::span<NearMesh> known(&near_meshes_[c * count], count);
+    for (NearMesh& one : known) {
+      if (!goes_on) one = {};
+      one.mesh_way -= before.way;
+    }
+    before = {};
+    if (!mesh) continue;
+    before = {std::get<MeshSolid>(last.shape).posed, last.placement.scale,
+              mesh_way_of(sampled_[c])};
+  }
 }
 
 void SurfaceContact::begin_patch(std::span<const RowRun> moved) {
@@ -116,6 +179,7 @@ void SurfaceContact::place(int step, const Field& displacement, Field& world) {
 
 bool SurfaceContact::begin(int step, const Field& from, const Field& to) {
   step_ = step;
+  places_.pose(step);
   place(step, from, before_);
   place(step + 1, to, free_);
   after_ = free_;
@@ -162,8 +226,9 @@ std::vector<SurfaceContact::Pair> SurfaceContact::near_pairs() const {
 bool SurfaceContact::find(bool is_first) {
   bool joins = false;
   for (const auto& [unknown, collider] : near_pairs()) {
-    std::uint8_t& joined = joined_[static_cast<std::size_t>(collider) * nodes_.size() +
-                                   static_cast<std::size_t>(unknown)];
+    const std::size_t pair =
+        static_cast<std::size_t>(collider) * nodes_.size() + static_cast<std::size_t>(unknown);
+    std::uint8_t& joined = joined_[pair];
     if (joined) continue;
     const SampledCollider& sampled = sampled_[static_cast<std::size_t>(collider)];
     const PlacedCollider& from = places_.colliders(step_)[static_cast<std::size_t>(collider)];
@@ -178,7 +243,12 @@ bool SurfaceContact::find(bool is_first) {
     std::optional<NodeRow> row;
     if (is_first && sampled.sticks)
       row = lying_row_of(from, to, before, lying * places_.diagonal());
-    if (!row) row = row_of(from, to, before, after, slack * places_.diagonal());
+    NearMesh* const near_mesh =
+        near_meshes_.empty()
+            ? nullptr
+            : &near_meshes_[static_cast<std::size_t>(collider * places_.first_rest().rows() +
+                                                     nodes_[static_cast<std::size_t>(unknown)])];
+    if (!row) row = row_of(from, to, before, after, slack * places_.diagonal(), near_mesh);
     if (!row) continue;
     joined = 1;
     joins = true;
@@ -250,6 +320,7 @@ void SurfaceContact::end_frame(const std::function<Vector3d(int node)>& displace
       if (moves_[static_cast<std::size_t>(node)]) continue;
       const Vector3d object = places_.rest(end, node) + displacement(node);
       const Vector3d world = pliant::to_world(places_.transform(end), object);
+      if (!(length_of(world - solid.translation) <= reach_of(solid))) continue;
       const double distance = nearness(solid.kept, solid.to_frame(world)).distance;
       if (distance < -lying * places_.diagonal()) facts_[c].held.add(-distance);
     }

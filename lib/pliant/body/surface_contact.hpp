@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,11 @@ class ContactPlaces {
   ContactPlaces(const BodyInputs& inputs, const Field& rest, int step_count);
 
   int step_count() const { return static_cast<int>(transforms_.size()) - 1; }
+  /// Of those with moving meshes, only the ones that were posed last.
   const std::vector<PlacedCollider>& colliders(int step) const { return colliders_[step]; }
+
+  /// Poses moving meshes as a step begins, and as it ends.
+  void pose(int step);
   const Transform& transform(int step) const { return transforms_[step]; }
 
   /// A node at rest as a step begins, object space. [length]
@@ -33,15 +38,17 @@ class ContactPlaces {
   /// The diagonal of the box around the nodes at rest at the frame, world. [length]
   double diagonal() const { return diagonal_; }
 
-  /// How much nearer a node that is displaced so comes to a collider than its deformation radius,
-  /// as the frame's steps begin and as it ends; its inside is all equally near. `displacement`:
+  /// How much nearer each node comes to a collider than its deformation radius, as the frame's
+  /// steps begin and as it ends; its inside is all equally near. `displacement` (#nodes x 3):
   /// object space. [length]
-  double depth(std::size_t collider, int node, const Vector3d& displacement) const;
+  std::vector<double> depths(std::size_t collider, const Field& displacement) const;
 
  private:
   const BodyInputs* inputs_ = nullptr;
   const Field* rest_ = nullptr;
   std::vector<std::vector<PlacedCollider>> colliders_;  // at each step's beginning, and at the end
+  std::vector<std::size_t> moving_meshes_;              // of the colliders
+  std::vector<int> posed_;                              // the steps of which they are posed
   std::vector<Transform> transforms_;                   // of the surface, likewise
   double diagonal_ = 0;
 };
@@ -78,6 +85,14 @@ class SurfaceContact final : public StepContact {
   struct Pair {
     int unknown, collider;
   };
+  // A mesh at the end of a frame, in its collider's frame, and how far its points went.
+  struct LastMesh {
+    std::shared_ptr<const PosedMesh> posed = {};  // null: no mesh
+    Vector3d scale = {1, 1, 1};
+    double way = 0;
+  };
+
+  void keep_near_meshes();
 
   void place(int step, const Field& displacement, Field& world);
   std::vector<Pair> near_pairs() const;
@@ -91,9 +106,11 @@ class SurfaceContact final : public StepContact {
   std::vector<int> nodes_;          // of the unknowns
   Field rest_, next_rest_, shape_;  // these at rest at the frame, at the next one, as they are
   int step_ = 0;
-  Field before_, free_, after_;       // the unknowns in the world: of a step, its end without
-                                      // contact, and its end
-  std::vector<std::uint8_t> joined_;  // of each collider, of each unknown
+  Field before_, free_, after_;        // the unknowns in the world: of a step, its end without
+                                       // contact, and its end
+  std::vector<std::uint8_t> joined_;   // of each collider, of each unknown
+  std::vector<NearMesh> near_meshes_;  // of each collider, of each node; empty: none is a mesh
+  std::vector<LastMesh> last_meshes_;  // of each collider, in the frame before
   NodeRows found_;
   std::vector<ContactRow> rows_;
   std::vector<std::uint8_t> moves_;   // of each node: whether some patch moves it

@@ -217,8 +217,8 @@ Result<void> TriangleBody::plan_on(const TriangleSurface& surface, const PointTr
   if (inputs.selects_by_colliders()) places.emplace(inputs, rest_at(inputs), plan.steps.count);
   std::vector<NodeDepth> others;
   for (std::size_t k = 0; places && k < inputs.colliders.size(); ++k) {
-    others.emplace_back([this, &places, k](int node) {
-      return places->depth(k, node, (state_.positions.row(node) - rest_.row(node)).transpose());
+    others.emplace_back([depths = places->depths(k, state_.positions - rest_)](int node) {
+      return depths[static_cast<std::size_t>(node)];
     });
   }
   LevelSet level_set =
