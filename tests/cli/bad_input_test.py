@@ -49,12 +49,12 @@ BAD_SCENES = {
         GRID, GRID + '<material goal="2"/><solver reference="none"/>', 3,
         'sheet.goal is 2, but must be 0 with reference="none"'),
     "a collider without a shape": (
-        "<point", '<collider name="b"/><point', 4, '<collider> "b" has no shape: one <sphere>, <capsule>, <box> or'),
+        "<point", '<collider name="b"/><point', 4, '<collider> "b" has no shape: one <sphere>, <capsule>, <box>, <plane> or'),
     "a collider of two shapes": (
         "<point", '<collider name="b"><sphere/><plane/></collider><point', 4, '<collider> "b" has two shapes'),
     "a ball that is an ellipsoid": (
         "<point", '<collider name="b"><sphere/><transform scale="1 2 1"/></collider><point', 4,
-        "b.scale is 1 2 1, but must be equal along x, y and z: use equal scales, or a box"),
+        "b.scale is 1 2 1, but must be equal along x, y and z: use equal scales, or a mesh"),
     "a box that is rounder than thick": (
         "<point", '<collider name="b"><box size="1 0.5 1" round="0.3"/></collider><point', 4,
         "b.round is 0.3, but must be at most 0.25"),
@@ -186,6 +186,46 @@ class BadInput(Command):
                 self.assertEqual(len(lines), 1, lines)
                 self.assertRegex(lines[0], rf"^\S*s\.xml:{line}: error: ")
                 self.assertIn(words, lines[0])
+
+    def test_meshes_of_colliders(self):
+        corners = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        sides = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+        vertices = "".join("v %d %d %d\n" % corner for corner in corners)
+
+        def write(name, faces):
+            self.write(name, vertices + "".join("f %s\n" % " ".join(map(str, face)) for face in faces))
+
+        write("cube.obj", sides)
+        write("open.obj", sides[:5])
+        write("turned.obj", sides[:5] + [sides[5][::-1]])
+        write("fin.obj", sides + [(1, 2, 8)])
+        write("bare.obj", [])
+        mesh = '<mesh file="cube.obj"/>'
+        for shape, words in (
+                ('<mesh file="open.obj"/>', 'collider "b", mesh *open.obj: the edge between vertices 2 and 4 has one face, '
+                 "but a collider is closed"),
+                ('<mesh file="turned.obj"/>', "the edge between vertices 2 and 4 has two faces that run through it in "
+                 "the same direction"),
+                ('<mesh file="fin.obj"/>', "the edge between vertices 1 and 2 has 3 faces"),
+                ('<mesh file="bare.obj"/>', "face"),
+                ('<mesh file="none.obj"/>', 'collider "b": '),
+                ('<mesh file="cube.obj" cache="none.npy"/>', 'collider "b": '),
+                ('<mesh file="cube.obj" object="lid"/>', "lid"),
+                ("<mesh/>", '<mesh> needs the attribute "file"'),
+                ('<mesh file="cube.obj" cacheStart="3"/>', "b.cacheStart is given, but no cache"),
+                ('<mesh file="cube.obj" weld="0.1"/>', "<mesh> weld: that is of a surface's mesh"),
+                ('<mesh file="cube.obj" uv="surface"/>', "<mesh> uv: that is of a surface's mesh"),
+                ('<mesh file="cube.obj" uvSet="1"/>', "<mesh> uvSet: that is of a surface's mesh"),
+                ('<mesh file="cube.obj" radius="1"/>', '<mesh> has no attribute "radius"'),
+                (mesh + "<sphere/>", '<collider> "b" has two shapes')):
+            with self.subTest(shape=shape):
+                line, = self.refused(self.write("s.xml", SCENE.format(end=9).replace(
+                    "<point", f'<collider name="b">{shape}</collider><point')))
+                self.assertRegex(line, r"^\S*(s\.xml:4|(bare|cube)\.obj\S*): error: ")
+                for part in words.split("*"):
+                    self.assertIn(part, line)
+        self.run_pliant("bake", self.write("s.xml", SCENE.format(end=3).replace(
+            "<point", f'<collider name="b">{mesh}</collider><point')), "-o", self.path("good.npy"))
 
     def test_static_surfaces_that_nothing_holds(self):
         static = '<material density="0" damping="0"/><solver region="all"/>'

@@ -202,49 +202,56 @@ std::size_t AnimatedShape::bytes(std::size_t vertex_count, int sample_count) {
   return fields * row * vertex_count + static_cast<std::size_t>(sample_count) * 3 * sizeof(double);
 }
 
-Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& scene,
-                     const RunContext& context) {
-  PLIANT_EXPECTS(surface.is_animated());
-  const CacheFile& file = surface.cache;
+Result<void> animate(RestShape& shape, MemoryShare& memory, const ShapeCache& of,
+                     const Scene& scene, const RunContext& context) {
   const auto located = [&](Error error) {
     if (error.code == ErrorCode::Unreadable)
-      return fail(scene.origin.located(
-          {.code = error.code, .message = unreadable_mesh(error, surface.name)},
-          scene.origin.at(surface.name, "cache")));
+      return fail(
+          scene.origin.located({.code = error.code, .message = unreadable_mesh(error, of.title)},
+                               scene.origin.at(of.name, "cache")));
     if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     const std::string part = error.file.empty() ? "" : fmt::format("cache {}: ", error.file);
-    error.message = fmt::format("surface \"{}\": {}{}", surface.name, part, error.message);
-    return fail(scene.origin.located(std::move(error), scene.origin.at(surface.name, "cache")));
+    error.message = fmt::format("{}: {}{}", of.title, part, error.message);
+    return fail(scene.origin.located(std::move(error), scene.origin.at(of.name, "cache")));
   };
-  auto cache = PointCache::open(file.path, scene.origin.root);
+  auto cache = PointCache::open(of.file.path, scene.origin.root);
   if (!cache) return located(cache.error());
-  const auto vertices = std::ssize(made.shape.cache_nodes());
+  const auto vertices = std::ssize(shape.cache_nodes());
   if (cache->vertex_count() != vertices) {
     return located({.message = fmt::format("it has {} vertices, but the shape has {}",
                                            cache->vertex_count(), vertices),
-                    .file = file.path});
+                    .file = of.file.path});
   }
-  std::size_t bytes = made.memory.bytes() + AnimatedShape::bytes(static_cast<std::size_t>(vertices),
-                                                                 cache->sample_count());
-  // A step on triangles places a copy of them.
-  if (made.shape.surface) bytes += bytes_as_surface(made.shape.mesh);
-  if (!made.memory.try_resize(bytes)) {
+  const std::size_t bytes =
+      memory.bytes() + of.bytes +
+      AnimatedShape::bytes(static_cast<std::size_t>(vertices), cache->sample_count());
+  if (!memory.try_resize(bytes)) {
     return located({.code = ErrorCode::OutOfMemory,
-                    .message = "its animated shape " + made.memory.complaint(bytes)});
+                    .message = "its animated shape " + memory.complaint(bytes)});
   }
-  auto frames = cache->frames(file.first, scene.start, scene.fps);
+  auto frames = cache->frames(of.file.first, scene.start, scene.fps);
   if (!frames) return located(frames.error());
-  std::optional<ShapeCycle> cycle;
-  if (surface.solver.loop) {
-    cycle = ShapeCycle{first_solved_frame(scene, surface), *surface.solver.loop};
-  }
-  auto shape = std::make_shared<const AnimatedShape>(*std::move(cache), *std::move(frames),
-                                                     made.shape, cycle);
-  const FrameSpan used = sampled_frames(scene, surface);
-  if (auto sound = shape->check(used.first - 1, used.last + 1, context); !sound)
+  auto animation =
+      std::make_shared<const AnimatedShape>(*std::move(cache), *std::move(frames), shape, of.cycle);
+  if (auto sound = animation->check(of.used.first, of.used.last, context); !sound)
     return located(sound.error());
-  made.shape.animation = std::move(shape);
+  shape.animation = std::move(animation);
   return {};
+}
+
+Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& scene,
+                     const RunContext& context) {
+  PLIANT_EXPECTS(surface.is_animated());
+  const FrameSpan used = sampled_frames(scene, surface);
+  ShapeCache cache{.title = fmt::format("surface \"{}\"", surface.name),
+                   .name = surface.name,
+                   .file = surface.cache,
+                   .used = {used.first - 1, used.last + 1}};
+  if (surface.solver.loop)
+    cache.cycle = ShapeCycle{first_solved_frame(scene, surface), *surface.solver.loop};
+  // A step on triangles places a copy of them.
+  if (made.shape.surface) cache.bytes = bytes_as_surface(made.shape.mesh);
+  return animate(made.shape, made.memory, cache, scene, context);
 }
 
 }  // namespace pliant

@@ -4,20 +4,21 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "pliant/core/field.hpp"
+#include "pliant/core/memory_budget.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/files/caches/point_cache.hpp"
 #include "pliant/mesh/mesh.hpp"
+#include "pliant/scene/scene.hpp"
 
 namespace pliant {
 
 struct RestShape;
 struct ReservedShape;
-struct Scene;
-struct Surface;
 
 /// A rest shape at three frames, #rows x 3, object space [length].
 struct ShapeFrames {
@@ -98,6 +99,21 @@ class AnimatedShape {
   mutable std::mutex mutex_;  // of what follows
   mutable FieldCache samples_, vertices_, node_shapes_;
 };
+
+/// A cache that moves a shape.
+struct ShapeCache {
+  std::string title = {};  ///< of what has the shape: `surface "sheet"`
+  std::string name = {};   ///< of that
+  CacheFile file = {};
+  FrameSpan used = {};  ///< the frames at which it is read
+  std::optional<ShapeCycle> cycle = {};
+  std::size_t bytes = 0;  ///< that the shape takes besides if it moves
+};
+
+/// Opens a cache for a shape, checks the samples of the frames, and reserves the memory for it.
+/// Errors: as below.
+Result<void> animate(RestShape& shape, MemoryShare& memory, const ShapeCache& cache,
+                     const Scene& scene, const RunContext& context);
 
 /// Opens the cache of an animated surface for its shape, checks the samples of the scene's frames,
 /// and reserves the memory for it. Errors, with the line of the attribute: those of `PointCache`

@@ -1,5 +1,8 @@
 #include "pliant/sampling/memory.hpp"
 
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_mesh.hpp"
+
 namespace pliant {
 namespace {
 
@@ -35,6 +38,20 @@ std::size_t bytes_of(const Mesh& mesh) {
   return bytes_of_mesh(static_cast<std::size_t>(mesh.positions.rows()), mesh.uvs.size(),
                        mesh.face_sizes.size(), mesh.corner_vertices.size()) +
          (mesh.corner_normals.size() + mesh.file_vertices.size() + names) * sizeof(int);
+}
+
+std::size_t bytes_to_read(const OpenFile& file) {
+  return bytes_to_read_byte * static_cast<std::size_t>(file.size());
+}
+
+std::size_t bytes_to_read_references(const OpenFile& file, const std::string& root,
+                                     const StopRequest& should_stop) {
+  std::size_t bytes = 0;
+  for (const auto& reference : mesh_references(file, root, should_stop)) {
+    // If it cannot be opened, reading it reports that.
+    if (const auto opened = OpenFile::open(reference, root)) bytes += bytes_to_read(*opened);
+  }
+  return bytes;
 }
 
 std::size_t bytes_of(const GridSheet& sheet) {

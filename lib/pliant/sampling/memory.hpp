@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
@@ -9,10 +11,20 @@
 
 namespace pliant {
 
+class OpenFile;
+
 // The memory that parts of a run need, known before it is allocated. Internal to sampling.
 
 /// A mesh. [bytes]
 std::size_t bytes_of(const Mesh& mesh);
+
+/// The memory for reading a mesh file. [bytes]
+std::size_t bytes_to_read(const OpenFile& file);
+
+/// The same for the files that it refers to, which are known only after reading it: that needs
+/// memory itself. [bytes]
+std::size_t bytes_to_read_references(const OpenFile& file, const std::string& root,
+                                     const StopRequest& should_stop);
 
 /// The mesh that `make_mesh` makes. Requires: columns, rows >= 3. [bytes]
 std::size_t bytes_of(const GridSheet& sheet);

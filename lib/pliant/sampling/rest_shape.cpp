@@ -51,22 +51,6 @@ struct BytesToMake {
     return bytes_of(size) + bytes_to_run(static_cast<std::size_t>(size.vertices) +
                                          static_cast<std::size_t>(net.points.rows()));
   }
-
-  static std::size_t of_file(const OpenFile& file) {
-    return bytes_to_read_byte * static_cast<std::size_t>(file.size());
-  }
-
-  // The files that a mesh file refers to; known only after reading the file, which needs memory
-  // itself.
-  static std::size_t of_references(const OpenFile& file, const std::string& root,
-                                   const StopRequest& should_stop) {
-    std::size_t bytes = 0;
-    for (const auto& reference : mesh_references(file, root, should_stop)) {
-      // If it cannot be opened, reading it reports that.
-      if (const auto opened = OpenFile::open(reference, root)) bytes += of_file(*opened);
-    }
-    return bytes;
-  }
 };
 
 // Resizes a surface's share of the memory.
@@ -230,9 +214,9 @@ class ShapeMaker {
   Result<Mesh> read(const MeshFile& file) {
     const auto opened = OpenFile::open(file.path, origin_.root);
     if (!opened) return fail(at_scene(opened.error()));
-    std::size_t ahead = BytesToMake::of_file(*opened);
+    std::size_t ahead = bytes_to_read(*opened);
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
-    ahead += BytesToMake::of_references(*opened, file.root, context_.should_stop);
+    ahead += bytes_to_read_references(*opened, file.root, context_.should_stop);
     if (auto taken = take_bytes(ahead); !taken) return fail(taken.error());
     const std::vector<std::string> attributes = attributes_of_maps(surface_);
     const auto read_with = [&](std::span<const std::string> names) {
@@ -343,8 +327,10 @@ class ShapeMaker {
   // names the file.
   Error at_scene(Error error, const std::string& attribute = "file") const {
     if (error.code == ErrorCode::Unreadable)
-      return origin_.located({.code = error.code, .message = unreadable_mesh(error, surface_.name)},
-                             origin_.at(surface_.name, "file"));
+      return origin_.located(
+          {.code = error.code,
+           .message = unreadable_mesh(error, fmt::format("surface \"{}\"", surface_.name))},
+          origin_.at(surface_.name, "file"));
     if (!error.file.empty() || error.code == ErrorCode::Interrupted) return error;
     return origin_.located(std::move(error), origin_.at(surface_.name, attribute));
   }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/expects.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/format/description.hpp"
 
@@ -181,9 +182,12 @@ struct SampleShape {
   }
 };
 
-Solid sample_solid(const Collider& collider, int frame) {
+Solid sample_solid(const Collider& collider, int frame, const ColliderMesh* mesh,
+                   ForceFaults& faults) {
   struct Sample {
     int frame;
+    const ColliderMesh* mesh;
+    ForceFaults& faults;
 
     Solid operator()(const SphereChannels& sphere) const {
       return SphereSolid{sphere.radius.at(frame)[0]};
@@ -195,12 +199,20 @@ Solid sample_solid(const Collider& collider, int frame) {
       return BoxSolid{to_vector(box.size.at(frame)), box.round.at(frame)[0]};
     }
     Solid operator()(const PlaneChannels&) const { return PlaneSolid{}; }
+    Solid operator()(const ClosedMesh&) const {
+      PLIANT_EXPECTS(mesh != nullptr);
+      auto posed = mesh->at(frame);
+      if (posed) return MeshSolid{*std::move(posed)};
+      faults.add(posed.error().message);
+      return MeshSolid{mesh->at_rest()};
+    }
   };
-  return std::visit(Sample{frame}, collider.shape);
+  return std::visit(Sample{frame, mesh, faults}, collider.shape);
 }
 
-ColliderPose sample_pose(const Collider& collider, int frame) {
-  return {sample_solid(collider, frame), collider.transform.placement_at(frame),
+ColliderPose sample_pose(const Collider& collider, int frame, const ColliderMesh* mesh,
+                         ForceFaults& faults) {
+  return {sample_solid(collider, frame, mesh, faults), collider.transform.placement_at(frame),
           collider.offset.at(frame)[0]};
 }
 
@@ -212,7 +224,10 @@ void sample_colliders(const Scene& scene, const SceneSampling& sampling, std::si
     const Collider& collider = scene.colliders[k];
     if (!collider.enabled.at(frame)) continue;
     const bool selects = surface.solver.region == SolvedRegion::Forces;
-    inputs.body.colliders.push_back({sample_pose(collider, frame), sample_pose(collider, frame + 1),
+    const auto pose = [&](int at) {
+      return sample_pose(collider, at, sampling.mesh(k), *inputs.faults);
+    };
+    inputs.body.colliders.push_back({pose(frame), pose(frame + 1),
                                      selects ? collider.deformation_radius.at(frame)[0] : 0,
                                      collider.friction.at(frame)[0], collider.stick.at(frame),
                                      static_cast<int>(k)});
@@ -259,6 +274,7 @@ std::unique_ptr<NoiseClock> clock_of(const Force& force, int start) {
 SceneSampling::SceneSampling(const Scene& scene)
     : targets_(targets_of(scene)),
       animations_(scene.surfaces.size()),
+      meshes_(scene.colliders.size()),
       carriers_(std::make_shared<const Carriers>(scene)) {
   for (const Force& force : scene.forces) clocks_.push_back(clock_of(force, scene.start));
 }

@@ -5,11 +5,13 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/body/body.hpp"
 #include "pliant/sampling/animated_shape.hpp"
 #include "pliant/sampling/carriers.hpp"
+#include "pliant/sampling/collider_mesh.hpp"
 #include "pliant/sampling/noise_clock.hpp"
 #include "pliant/sampling/targets.hpp"
 #include "pliant/scene/scene.hpp"
@@ -69,6 +71,14 @@ class SceneSampling {
   /// Tells of a surface's rest shape and how it moves, before anything of the scene is sampled.
   void tell(std::size_t surface, const RestShape& shape);
 
+  /// Tells of the mesh of a collider, before anything of the scene is sampled.
+  void tell_mesh(std::size_t collider, std::shared_ptr<const ColliderMesh> mesh) {
+    meshes_[collider] = std::move(mesh);
+  }
+
+  /// The mesh of a collider; null: it is none, or not told.
+  const ColliderMesh* mesh(std::size_t collider) const { return meshes_[collider].get(); }
+
   const Carriers& carriers() const { return *carriers_; }
 
   /// The animation of a surface's rest shape; null: it stays the same.
@@ -81,6 +91,7 @@ class SceneSampling {
   std::vector<SurfaceTargets> targets_;
   std::vector<std::unique_ptr<NoiseClock>> clocks_;               // one per force
   std::vector<std::shared_ptr<const AnimatedShape>> animations_;  // one per surface
+  std::vector<std::shared_ptr<const ColliderMesh>> meshes_;       // one per collider
   std::shared_ptr<const Carriers> carriers_;
 };
 

@@ -27,6 +27,13 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
       if (source.include.is_known()) add(source.file, "a file that the scene includes", root);
     }
   }
+  const auto add_mesh = [&](const MeshFile& mesh) {
+    if (!add(mesh.path, "a mesh of the scene", root)) return;
+    const auto opened = OpenFile::open(mesh.path, root);
+    if (!opened) return;
+    for (auto& file : mesh_references(*opened, mesh.root, should_stop))
+      add(std::move(file), "a file that a mesh of the scene refers to", mesh.root);
+  };
   for (const Surface& surface : scene.surfaces) {
     if (is_stopped(should_stop)) break;
     if (surface.is_animated()) add(surface.cache.path, "a cache of the scene", root);
@@ -36,12 +43,14 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
     for (const Hold& hold : surface.holds) {
       if (!hold.file.empty()) add(hold.file, "a map of the scene", root);
     }
-    const auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (!mesh || !add(mesh->path, "a mesh of the scene", root)) continue;
-    const auto opened = OpenFile::open(mesh->path, root);
-    if (!opened) continue;
-    for (auto& file : mesh_references(*opened, mesh->root, should_stop))
-      add(std::move(file), "a file that a mesh of the scene refers to", mesh->root);
+    if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape)) add_mesh(*mesh);
+  }
+  for (const Collider& collider : scene.colliders) {
+    if (is_stopped(should_stop)) break;
+    const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
+    if (!closed) continue;
+    if (!closed->cache.path.empty()) add(closed->cache.path, "a cache of the scene", root);
+    add_mesh(closed->mesh);
   }
   return inputs;
 }

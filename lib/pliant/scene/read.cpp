@@ -94,7 +94,8 @@ void check(const Scene& scene, std::span<const Named> named, SceneFile& file) {
   for (const NamedMesh& mesh : file.meshes) {
     if (file.findings.is_over(parts_of_object)) return;
     if (const auto readable = OpenFile::open(mesh.path, file.root); !readable)
-      file.findings.add_problem(mesh.place, unreadable_mesh(readable.error(), mesh.surface));
+      file.findings.add_problem(
+          mesh.place, unreadable_mesh(readable.error(), title_of_object(scene, mesh.owner)));
   }
 }
 
@@ -102,16 +103,19 @@ Scene read_root(const Element& root, SceneFile& file) {
   Scene scene;
   Contents contents = contents_of(scene);
   read_contents(root, contents, "", file);
-  for (Surface& surface : scene.surfaces) {
-    auto* const mesh = std::get_if<MeshFile>(&surface.shape);
-    if (!mesh) continue;
-    const auto named = file.parts.find(fmt::format("{}.file", surface.name));
-    mesh->root =
+  const auto give_root = [&](const std::string& name, MeshFile& mesh) {
+    const auto named = file.parts.find(fmt::format("{}.file", name));
+    mesh.root =
         (file.root.empty() ? file.folder_of(named != file.parts.end() ? named->second.text : 0)
                            : file.root)
             .string();
-    if (mesh->root.empty()) mesh->root = ".";  // empty would mean the mesh's own folder
-  }
+    if (mesh.root.empty()) mesh.root = ".";  // empty would mean the mesh's own folder
+  };
+  for (Surface& surface : scene.surfaces)
+    if (auto* const mesh = std::get_if<MeshFile>(&surface.shape)) give_root(surface.name, *mesh);
+  for (Collider& collider : scene.colliders)
+    if (auto* const closed = std::get_if<ClosedMesh>(&collider.shape))
+      give_root(collider.name, closed->mesh);
 
   std::vector<Named> named;
   add_named_children(root, named, file.findings);

@@ -40,7 +40,7 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// An animation of a surface's rest shape, in a file: .pc2, .mdd or .npy.
+/// An animation of a surface's rest shape, or of a collider's mesh, in a file: .pc2, .mdd or .npy.
 struct CacheFile {
   std::string path = {};             ///< as passed to open; empty: the shape stays as it is
   std::optional<double> first = {};  ///< the frame of its first sample; none: that of a .pc2
@@ -344,6 +344,15 @@ struct PlaneChannels {
   friend bool operator==(const PlaneChannels&, const PlaneChannels&) = default;
 };
 
+/// What a closed mesh in a file encloses: each edge has two faces, which run through it in opposite
+/// directions. It is turned outwards by its volume.
+struct ClosedMesh {
+  MeshFile mesh = {};    ///< without a set of UVs
+  CacheFile cache = {};  ///< of its vertices
+
+  friend bool operator==(const ClosedMesh&, const ClosedMesh&) = default;
+};
+
 /// A solid that surfaces meet: no node enters it. docs/model.md, "Contact".
 struct Collider {
   std::string name;                       ///< same rules as for a force; no force has the same name
@@ -353,7 +362,7 @@ struct Collider {
   Channel<1> offset = 0;                  ///< that nodes keep from it, >= 0, world [length]
   Channel<1> friction = 0;                ///< mu >= 0 [1]
   Switch stick = false;                   ///< what touches is held
-  std::variant<SphereChannels, CapsuleChannels, BoxChannels, PlaneChannels> shape =
+  std::variant<SphereChannels, CapsuleChannels, BoxChannels, PlaneChannels, ClosedMesh> shape =
       {};  ///< by default `SphereChannels`
   /// Its scale multiplies the lengths of the shape but for `round`; that of a sphere or capsule is
   /// the same along all axes, up to signs.

@@ -10,6 +10,7 @@
 
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/mesh/written/binding.hpp"
+#include "pliant/sampling/collider_mesh.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
@@ -120,7 +121,9 @@ Result<void> Bodies::make_all() {
     }
     shapes.push_back(*std::move(made));
   }
-  if (context_.is_stopped()) return interrupted_at_start();
+  read_colliders(errors);
+  if (context_.is_stopped() || std::ranges::count(errors, ErrorCode::Interrupted, &Error::code))
+    return interrupted_at_start();
   if (errors.empty()) {
     find_drivers();
     auto joined = bind_driven(shapes);
@@ -138,6 +141,22 @@ Result<void> Bodies::make_all() {
   keeps_velocities_.resize(bodies_.size());
   cycles_.resize(bodies_.size());
   return {};
+}
+
+// Reads the meshes of colliders.
+void Bodies::read_colliders(std::vector<Error>& errors) {
+  for (std::size_t k = 0; k < scene_.colliders.size() && !context_.is_stopped(); ++k) {
+    const Collider& collider = scene_.colliders[k];
+    if (!std::holds_alternative<ClosedMesh>(collider.shape)) continue;
+    MemoryShare memory(&memory_);
+    auto mesh = find_collider_mesh(collider, scene_, context_, memory);
+    if (!mesh) {
+      errors.push_back(std::move(mesh.error()));
+      continue;
+    }
+    sampling_.tell_mesh(k, *std::move(mesh));
+    collider_shares_.push_back(std::move(memory));
+  }
 }
 
 // The surface that drives each surface; its own index if none does.
@@ -460,7 +479,8 @@ Profile Bodies::profile() const {
 
 std::size_t Bodies::surface_memory() const {
   std::size_t bytes = 0;
-  for (const MemoryShare& share : shares_) bytes += share.bytes();
+  for (const auto* const shares : {&shares_, &collider_shares_})
+    for (const MemoryShare& share : *shares) bytes += share.bytes();
   return bytes;
 }
 

@@ -95,6 +95,7 @@ class Bodies {
   Result<void> add(const Surface& surface, ReservedShape made);
   void for_each_body(const std::function<void(std::size_t)>& visit);
   void find_drivers();
+  void read_colliders(std::vector<Error>& errors);
   Result<void> join_forces(std::span<ReservedShape> made) const;
   Result<void> bind_driven(std::span<ReservedShape> made) const;
   Result<void> show(std::size_t index, int frame, SurfaceFrame& shown) const;
@@ -111,7 +112,8 @@ class Bodies {
   SceneSampling& sampling_;
   MemoryBudget memory_;
   ThreadPool threads_;
-  std::vector<MemoryShare> shares_;  // one a surface, as the following
+  std::vector<MemoryShare> collider_shares_;  // one for each mesh
+  std::vector<MemoryShare> shares_;           // one a surface, as the following
   std::vector<RestShape> rest_shapes_;
   std::vector<std::unique_ptr<Body>> bodies_;
   std::vector<std::size_t> drivers_;  // the index of the surface that drives each, or its own

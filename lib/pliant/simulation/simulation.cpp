@@ -7,6 +7,7 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/sampling/animated_shape.hpp"
+#include "pliant/sampling/collider_mesh.hpp"
 #include "pliant/sampling/material_maps.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/checks/check.hpp"
@@ -86,6 +87,13 @@ Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
     for (const std::string& text : {checked->note, checked->left_out})
       if (auto note = note_on(surface, text, scene.origin)) notes.push_back(*note);
     shapes.push_back(*std::move(checked));
+  }
+  std::vector<MemoryShare> meshes;
+  for (const Collider& collider : scene.colliders) {
+    if (!std::holds_alternative<ClosedMesh>(collider.shape) || context.is_stopped()) continue;
+    meshes.emplace_back(&memory);
+    auto mesh = find_collider_mesh(collider, scene, context, meshes.back());
+    if (!mesh) errors.push_back(std::move(mesh.error()));
   }
   if (context.is_stopped()) return interrupted_at_start();
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));

@@ -27,6 +27,12 @@ std::vector<std::string> names_in(const Scene& scene) {
     names.push_back(mesh ? mesh->path : "");
     names.push_back(mesh ? mesh->root : "");
   }
+  for (const Collider& collider : scene.colliders) {
+    const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
+    names.push_back(closed ? closed->cache.path : "");
+    names.push_back(closed ? closed->mesh.path : "");
+    names.push_back(closed ? closed->mesh.root : "");
+  }
   return names;
 }
 

@@ -90,7 +90,8 @@ class ChannelChecker {
     check_channels(collider, collider);
     if (!kept_.contains("scale")) return;
     if (!std::holds_alternative<PlaneChannels>(collider.shape) &&
-        !std::holds_alternative<BoxChannels>(collider.shape)) {
+        !std::holds_alternative<BoxChannels>(collider.shape) &&
+        !std::holds_alternative<ClosedMesh>(collider.shape)) {
       check(collider.name, "scale", collider.transform.scale,
             [](const Value<3>& scale) { return complaint_of_uneven(scale); });
     }
@@ -104,7 +105,7 @@ class ChannelChecker {
       return std::abs(std::abs(other) - size) <= 1e-9 * size;
     };
     if (is_equal(scale[1]) && is_equal(scale[2])) return {};
-    return fmt::format("is {}, but must be equal along x, y and z: use equal scales, or a box",
+    return fmt::format("is {}, but must be equal along x, y and z: use equal scales, or a mesh",
                        fmt::join(scale, " "));
   }
 

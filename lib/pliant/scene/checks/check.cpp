@@ -11,8 +11,14 @@
 
 namespace pliant {
 
-std::string unreadable_mesh(const Error& error, const std::string& surface) {
-  return fmt::format("surface \"{}\": {}: {}", surface, error.file, error.message);
+std::string title_of_object(const Scene& scene, const std::string& name) {
+  const bool is_collider =
+      std::ranges::find(scene.colliders, name, &Collider::name) != scene.colliders.end();
+  return fmt::format("{} \"{}\"", is_collider ? "collider" : "surface", name);
+}
+
+std::string unreadable_mesh(const Error& error, const std::string& title) {
+  return fmt::format("{}: {}: {}", title, error.file, error.message);
 }
 
 std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop) {

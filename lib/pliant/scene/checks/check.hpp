@@ -19,7 +19,10 @@ namespace pliant {
 /// their lines; fewer if the caller wants it to stop.
 std::vector<Error> check_scene(const Scene& scene, const StopRequest& should_stop = {});
 
-/// What an error (Unreadable) of a reader of meshes or caches says about a surface.
-std::string unreadable_mesh(const Error& error, const std::string& surface);
+/// `surface "sheet"`, or `collider "ball"`: what names a mesh file, for messages.
+std::string title_of_object(const Scene& scene, const std::string& name);
+
+/// What an error (Unreadable) of a reader of meshes or caches says about such an object.
+std::string unreadable_mesh(const Error& error, const std::string& title);
 
 }  // namespace pliant

@@ -66,6 +66,11 @@ class WholeChecker {
       check_follow(group);
     }
     check_targets();
+    for (const Collider& collider : scene_.colliders) {
+      if (findings_.is_over(parts_of_object)) return;
+      if (const auto* const closed = std::get_if<ClosedMesh>(&collider.shape))
+        check(collider.name, *closed);
+    }
     check_colliders(scene_, is_sound_, findings_);
   }
 
@@ -201,12 +206,7 @@ class WholeChecker {
 
   void check_cache(const Surface& surface) {
     check_ranges(surface.name, surface.cache);
-    if (!surface.is_animated()) {
-      if (surface.cache.first && is_sound(surface.name, "cache"))
-        complain(surface.name, "cacheStart",
-                 fmt::format("{}.cacheStart is given, but no cache", surface.name));
-      return;
-    }
+    if (!surface.is_animated()) return check_start(surface.name, surface.cache);
     if (std::holds_alternative<NurbsNet>(surface.shape))
       complain(
           surface.name, "cache",
@@ -221,6 +221,17 @@ class WholeChecker {
           fmt::format("{}.reference: a cache moves the shape at rest, but reference=\"none\" has "
                       "none",
                       surface.name));
+  }
+
+  void check(const std::string& name, const ClosedMesh& closed) {
+    check_ranges(name, closed);
+    if (closed.cache.path.empty()) check_start(name, closed.cache);
+  }
+
+  // Of a shape that no cache moves.
+  void check_start(const std::string& name, const CacheFile& cache) {
+    if (cache.first && is_sound(name, "cache"))
+      complain(name, "cacheStart", fmt::format("{}.cacheStart is given, but no cache", name));
   }
 
   void check_time(const Surface& surface) {

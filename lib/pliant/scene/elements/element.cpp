@@ -210,7 +210,7 @@ void take_over(const Element& element, const GivenAttribute& given, Slot& row, F
   row.is_animated = true;
 }
 
-void locate_file(const Element& element, Slot& row, const std::string& surface, std::string& path,
+void locate_file(const Element& element, Slot& row, const std::string& owner, std::string& path,
                  SceneFile& file) {
   if (!row.at.is_known() || !row.is_sound) return;
   const std::string written = std::exchange(path, (file.folder_of(row.at.text) / path).string());
@@ -219,7 +219,7 @@ void locate_file(const Element& element, Slot& row, const std::string& surface, 
     return file.findings.add_problem(
         row.at, value_problem(element, row.attribute.name, written, below.error().message));
   }
-  file.meshes.push_back({surface, path, row.at});
+  file.meshes.push_back({owner, path, row.at});
 }
 
 void record(const std::string& name, std::span<const Slot> table, SceneFile& file) {

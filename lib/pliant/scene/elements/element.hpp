@@ -46,7 +46,7 @@ void take_over(const Element& element, const GivenAttribute& given, Slot& row, F
 /// Finds the file that an attribute names, relative to the folder of the file that the attribute
 /// stands in, and adds it to the scene's meshes; does nothing without a sound attribute. Problem:
 /// it is outside the scene's root.
-void locate_file(const Element& element, Slot& row, const std::string& surface, std::string& path,
+void locate_file(const Element& element, Slot& row, const std::string& owner, std::string& path,
                  SceneFile& file);
 
 /// Records the places of the attributes of a table, and which attributes have problems.

@@ -15,9 +15,9 @@
 
 namespace pliant::xml {
 
-/// A mesh file or a cache that a surface names.
+/// A mesh file or a cache that a surface or a collider names.
 struct NamedMesh {
-  std::string surface;  ///< empty: its name could not be read
+  std::string owner;  ///< empty: its name could not be read
   std::filesystem::path path;
   TextPlace place;
 };

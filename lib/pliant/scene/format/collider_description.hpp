@@ -3,6 +3,7 @@
 #include <string_view>
 
 #include "pliant/scene/format/force_description.hpp"
+#include "pliant/scene/format/shape_description.hpp"
 
 namespace pliant {
 
@@ -112,6 +113,20 @@ struct Description<PlaneChannels> {
 
   template <class Row, class... Of>
   static void rows(Row&&, Of&...) {}
+};
+
+/// The element is that of a surface's mesh, of whose attributes it has only some.
+template <>
+struct Description<ClosedMesh> {
+  static constexpr std::string_view element = "mesh";
+  static constexpr std::string_view meaning = "A polygon mesh from a file.";
+  static constexpr std::string_view words[] = {"file", "object", "cache", "cacheStart"};
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    describe(row, of.mesh...);
+    describe(row, of.cache...);
+  }
 };
 
 }  // namespace pliant

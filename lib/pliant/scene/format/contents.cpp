@@ -124,6 +124,24 @@ Contents contents_of(Force& force) {
   return made;
 }
 
+Contents contents_of(ClosedMesh& mesh) {
+  Contents made = empty_contents<Description<ClosedMesh>>();
+  auto reading = std::make_shared<MeshReading>();
+  SlotMaker maker;
+  describe(maker, mesh.mesh);
+  describe(maker, *reading);
+  describe(maker, mesh.cache);
+  made.attributes = maker.take();
+  made.unused = std::move(reading);
+  for (Slot& slot : made.attributes) {
+    if (std::ranges::count(Description<ClosedMesh>::words, slot.attribute.name) == 0)
+      slot.excluded =
+          "that is of a surface's mesh; the mesh of a collider has file, object, cache and "
+          "cacheStart";
+  }
+  return made;
+}
+
 Contents contents_of(PointsOf of) {
   Contents made = empty_contents<Description<PointsOf>>();
   made.numbers = [&net = of.net] {

@@ -49,6 +49,7 @@ struct Contents {
   /// Stores its text, or complains.
   std::function<Checked<void>(std::vector<double>)> take_numbers = {};
   const std::string* driver = nullptr;  ///< of a surface, the one that it follows; may be empty
+  std::shared_ptr<void> unused = {};    ///< places of attributes that its thing does not have
 
   /// The slots that an <animate> in it may name: its own, and those of its parts.
   std::vector<Slot*> channels();
@@ -62,6 +63,7 @@ Contents contents_of(T&& thing);
 
 Contents contents_of(Surface& surface);
 Contents contents_of(Force& force);
+Contents contents_of(ClosedMesh& mesh);
 Contents contents_of(PointsOf of);
 Contents contents_of(WeightsOf of);
 Contents contents_of(NetOf<Surface> of);

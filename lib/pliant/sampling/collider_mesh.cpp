@@ -1,0 +1,242 @@
+#include "pliant/sampling/collider_mesh.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pliant/core/hash.hpp"
+#include "pliant/core/shelf.hpp"
+#include "pliant/files/open_file.hpp"
+#include "pliant/files/read_mesh.hpp"
+#include "pliant/mesh/triangles/triangle_surface.hpp"
+#include "pliant/sampling/memory.hpp"
+#include "pliant/sampling/rest_shape.hpp"
+#include "pliant/scene/checks/check.hpp"
+
+namespace pliant {
+namespace {
+
+// The poses of a moving mesh that a run keeps: of the last frames; of the last steps of a surface.
+constexpr std::size_t most_poses = 3, poses_of_surface = 10;
+
+// Reads the mesh of one collider, and tells problems at its line.
+class ColliderMeshReader {
+ public:
+  ColliderMeshReader(const Collider& collider, const Scene& scene, const RunContext& context,
+                     MemoryShare& memory)
+      : name_(collider.name),
+        title_(fmt::format("collider \"{}\"", collider.name)),
+        file_(std::get<ClosedMesh>(collider.shape).mesh),
+        origin_(scene.origin),
+        context_(context),
+        memory_(memory) {}
+
+  Result<Mesh> read() {
+    const auto opened = OpenFile::open(file_.path, origin_.root);
+    if (!opened) return fail(at_scene(opened.error()));
+    std::size_t ahead = bytes_to_read(*opened);
+    if (auto taken = take(ahead); !taken) return fail(taken.error());
+    ahead += bytes_to_read_references(*opened, file_.root, context_.should_stop);
+    if (auto taken = take(ahead); !taken) return fail(taken.error());
+    auto mesh = read_mesh(*opened, file_.object, file_.uv_set, file_.root, context_, {});
+    if (!mesh) return fail(at_scene(mesh.error()));
+    return mesh;
+  }
+
+  Result<TriangleSurface> make_triangles(const Mesh& mesh) {
+    // A corner while nodes, edges and triangles are found; a vertex in the tree for welding.
+    constexpr std::size_t of_corner = 140, of_vertex = 100;
+    const std::size_t bytes = bytes_of(mesh) + of_corner * mesh.corner_vertices.size() +
+                              of_vertex * static_cast<std::size_t>(mesh.vertex_count());
+    if (auto taken = take(bytes); !taken) return fail(taken.error());
+    auto surface = make_surface(mesh, {}, context_.should_stop);
+    if (!surface) return fail(about_mesh(surface.error()));
+    return surface;
+  }
+
+  Error open(const Mesh& mesh, const TriangleSurface& surface, const OpenEdge& edge) const {
+    const auto vertex = [&](int node) {
+      const auto found = std::ranges::find(surface.vertex_nodes, node);
+      return mesh.number_of(static_cast<int>(found - surface.vertex_nodes.begin()));
+    };
+    const std::string sides = edge.sides == 1 ? "has one face"
+                              : edge.sides == 2
+                                  ? "has two faces that run through it in the same direction"
+                                  : fmt::format("has {} faces", edge.sides);
+    return about_mesh({.code = ErrorCode::InvalidInput,
+                       .message = fmt::format(
+                           "the edge between vertices {} and {} {}, but a collider is closed: each "
+                           "edge has two faces, which run through it in opposite directions",
+                           vertex(edge.from), vertex(edge.to), sides)});
+  }
+
+  Result<void> take(std::size_t bytes) {
+    if (memory_.try_resize(bytes)) return {};
+    return fail(origin_.located({.code = ErrorCode::OutOfMemory,
+                                 .message = fmt::format("{} {}", title_, memory_.complaint(bytes))},
+                                origin_.at(name_)));
+  }
+
+  Error about_mesh(Error error) const {
+    if (error.code == ErrorCode::Interrupted) return error;
+    error.message = fmt::format("{}, mesh {}: {}", title_, file_.path, error.message);
+    return at_scene(std::move(error));
+  }
+
+  const std::string& title() const { return title_; }
+
+ private:
+  // An error in the file's contents already names the file.
+  Error at_scene(Error error) const {
+    if (error.code == ErrorCode::Unreadable)
+      return origin_.located({.code = error.code, .message = unreadable_mesh(error, title_)},
+                             origin_.at(name_, "file"));
+    if (!error.file.empty() || error.code == ErrorCode::Interrupted) return error;
+    return origin_.located(std::move(error), origin_.at(name_, "file"));
+  }
+
+  std::string name_, title_;
+  MeshFile file_;
+  const SceneOrigin& origin_;
+  const RunContext& context_;
+  MemoryShare& memory_;
+};
+
+// All that the mesh of a collider is made from, besides its files.
+struct MeshValues {
+  std::string name, root, path, object, mesh_root;
+  CacheFile cache;
+  bool is_scaled;  // by a channel that is animated
+  std::size_t surfaces;
+  double fps;
+  int start, first, last;  // of the cache: only with one
+
+  friend bool operator==(const MeshValues&, const MeshValues&) = default;
+};
+
+MeshValues values_of(const Collider& collider, const Scene& scene, std::size_t surfaces) {
+  const auto& [mesh, cache] = std::get<ClosedMesh>(collider.shape);
+  const FrameSpan used = sampled_frames(scene);
+  const bool moves = !cache.path.empty();
+  return {.name = collider.name,
+          .root = scene.origin.root,
+          .path = mesh.path,
+          .object = mesh.object,
+          .mesh_root = mesh.root,
+          .cache = cache,
+          .is_scaled = collider.transform.scale.is_animated(),
+          .surfaces = surfaces,
+          .fps = moves ? scene.fps : 0,
+          .start = moves ? scene.start : 0,
+          .first = moves ? used.first : 0,
+          .last = moves ? used.last : 0};
+}
+
+struct ColliderMeshItem final : Shelf::Item {
+  MeshValues values = {};
+  std::shared_ptr<const ColliderMesh> mesh;
+  std::size_t bytes = 0;
+};
+
+std::size_t count_surfaces(const Collider& collider, const Scene& scene) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(scene.surfaces, [&](const Surface& surface) {
+        return !surface.is_driven() &&
+               (collider.targets.empty() ||
+                std::ranges::find(collider.targets, surface.name) != collider.targets.end());
+      }));
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const ColliderMesh>> find_collider_mesh(const Collider& collider,
+                                                               const Scene& scene,
+                                                               const RunContext& context,
+                                                               MemoryShare& memory) {
+  const std::size_t surfaces = count_surfaces(collider, scene);
+  if (!context.shelf) return ColliderMesh::make(collider, scene, surfaces, context, memory);
+  const MeshValues values = values_of(collider, scene, surfaces);
+  const Hash key = hash_of(collider.name);
+  const auto found = context.shelf->find<ColliderMeshItem>(
+      key, [&](const ColliderMeshItem& one) { return one.values == values; });
+  // Making it tells what does not fit.
+  if (found && memory.try_resize(found->bytes)) return found->mesh;
+  auto made = ColliderMesh::make(collider, scene, surfaces, context, memory);
+  if (made && !found) {
+    auto item = std::make_shared<ColliderMeshItem>();
+    item->values = values;
+    item->mesh = *made;
+    item->bytes = memory.bytes();
+    context.shelf->keep(key, std::move(item), memory.bytes());
+  }
+  return made;
+}
+
+Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& collider,
+                                                               const Scene& scene,
+                                                               std::size_t surfaces,
+                                                               const RunContext& context,
+                                                               MemoryShare& memory) {
+  ColliderMeshReader reader(collider, scene, context, memory);
+  auto mesh = reader.read();
+  if (!mesh) return fail(mesh.error());
+  auto surface = reader.make_triangles(*mesh);
+  if (!surface) return fail(surface.error());
+  auto made = std::shared_ptr<ColliderMesh>(new ColliderMesh());
+  StopPoll poll(context.should_stop);
+  made->faces_ = FaceTriangles(*surface, poll);
+  const Field points = made->faces_.with_centres(surface->rest, poll);
+  if (poll.after(0)) return interrupted();
+  if (const auto edge = SolidMesh::open_edge(made->faces_.triangles))
+    return fail(reader.open(*mesh, *surface, *edge));
+
+  const CacheFile& cache = std::get<ClosedMesh>(collider.shape).cache;
+  const bool moves = !cache.path.empty() || collider.transform.scale.is_animated();
+  const std::size_t poses = 2 + (moves ? most_poses + poses_of_surface * surfaces : 0);
+  const std::size_t kept = SolidMesh::bytes(made->faces_.triangles.size(),
+                                            static_cast<std::size_t>(points.rows()), poses);
+  if (auto taken = reader.take(std::max(kept, memory.bytes())); !taken) return fail(taken.error());
+  auto solid = SolidMesh::make(made->faces_.triangles, points, context.should_stop);
+  if (!solid) return fail(solid.error());
+  made->at_rest_ = std::make_shared<const PosedMesh>(*std::move(solid), points);
+  RestShape shape{.name = collider.name,
+                  .mesh = {},
+                  .vertex_nodes = std::move(surface->vertex_nodes),
+                  .rest = std::move(surface->rest)};
+  shape.mesh.first_index = mesh->first_index;
+  *mesh = {};
+  if (auto taken = reader.take(kept); !taken) return fail(taken.error());
+  if (cache.path.empty()) return std::shared_ptr<const ColliderMesh>(std::move(made));
+  const FrameSpan used = sampled_frames(scene);
+  auto moved = animate(shape, memory,
+                       {.title = reader.title(),
+                        .name = collider.name,
+                        .file = cache,
+                        .used = {used.first, used.last + 1}},
+                       scene, context);
+  if (!moved) return fail(moved.error());
+  made->animation_ = std::move(shape.animation);
+  return std::shared_ptr<const ColliderMesh>(std::move(made));
+}
+
+Result<std::shared_ptr<const PosedMesh>> ColliderMesh::at(int frame) const {
+  if (!animation_) return at_rest_;
+  const auto nodes = animation_->nodes_at(frame);
+  if (!nodes) return fail(nodes.error());
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(kept_, *nodes, &Kept::nodes);
+  if (found != kept_.end()) {
+    std::rotate(kept_.begin(), found, found + 1);
+    return kept_.front().posed;
+  }
+  StopPoll never({});
+  auto posed = std::make_shared<const PosedMesh>(at_rest_->shared_mesh(),
+                                                 faces_.with_centres(**nodes, never));
+  if (kept_.size() == most_poses) kept_.pop_back();
+  kept_.insert(kept_.begin(), {*nodes, posed});
+  return posed;
+}
+
+}  // namespace pliant
