@@ -3,6 +3,8 @@
 //
 //   free   a frame of a sheet that no collider targets, the median [ms]
 //   near   a ball passes near it and touches nothing
+//   mesh   the same with a mesh of 10^5 triangles; one that a cache moves is "cached", and one that
+//          encloses all of the sheet, with a hollow, is "around"
 //   others a ball or a floor touches it and moves on in each frame; the nodes that it pushes in the
 //          last frame, and the median; first: the frame in which it meets the sheet
 //
@@ -10,7 +12,10 @@
 // Run: build/release/bench/contact [--sides 101,201] [--frames N]
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -35,6 +40,48 @@ Field sheet(const Grid& grid) {
   return rest;
 }
 
+// A ball of triangles, in rows from pole to pole, which are not where a sheet meets it;
+// `is_around`: with a hollow within.
+MeshSolid mesh_of_ball(double radius, int rows, bool is_around) {
+  constexpr double half_turn = 3.14159265358979323846;
+  const int columns = rows;
+  std::vector<Vector3d> places;
+  std::vector<SolidMesh::Corners> triangles;
+  const auto add_ball = [&](double size, bool is_inward) {
+    const int first = static_cast<int>(places.size());
+    places.emplace_back(size, 0, 0);
+    places.emplace_back(-size, 0, 0);
+    for (int row = 1; row < rows; ++row) {
+      for (int k = 0; k < columns; ++k) {
+        const double down = half_turn * row / rows, round = 2 * half_turn * k / columns;
+        places.emplace_back(size * std::cos(down), size * std::sin(down) * std::cos(round),
+                            size * std::sin(down) * std::sin(round));
+      }
+    }
+    const auto at = [&](int row, int k) {
+      if (row == 0 || row == rows) return first + (row == 0 ? 0 : 1);
+      return first + 2 + (row - 1) * columns + k % columns;
+    };
+    const auto add = [&](int a, int b, int c) {
+      if (a == b || b == c || c == a) return;
+      triangles.push_back(is_inward ? SolidMesh::Corners{a, c, b} : SolidMesh::Corners{a, b, c});
+    };
+    for (int row = 0; row < rows; ++row) {
+      for (int k = 0; k < columns; ++k) {
+        add(at(row, k), at(row, k + 1), at(row + 1, k));
+        add(at(row, k + 1), at(row + 1, k + 1), at(row + 1, k));
+      }
+    }
+  };
+  add_ball(radius, false);
+  if (is_around) add_ball(0.9 * radius, true);
+  Field points(static_cast<Eigen::Index>(places.size()), 3);
+  for (std::size_t k = 0; k < places.size(); ++k)
+    points.row(static_cast<Eigen::Index>(k)) = places[k].transpose();
+  if (SolidMesh::open_edge(triangles)) std::abort();
+  return {std::make_shared<const PosedMesh>(SolidMesh::make(triangles, points).value(), points)};
+}
+
 struct Case {
   std::string_view name;
   Solid shape = SphereSolid{0.1};
@@ -42,6 +89,7 @@ struct Case {
   double first = 0, last = 0;  // height of its centre, or of the floor, at the first and last frame
   double load = 0;             // down, on all of the sheet
   double density = 1;
+  bool is_cached = false;  // each frame has a mesh of its own
 };
 
 struct Outcome {
@@ -69,8 +117,15 @@ Outcome run(const Case& of, const Grid& grid, int frames) {
       const double height = of.first + (of.last - of.first) * at / frames;
       return ColliderPose{of.shape, {{0.02 * at / frames, height, 0.01}}, 0};
     };
+    const auto other_mesh = [&](ColliderPose pose) {
+      const PosedMesh& mesh = *std::get<MeshSolid>(pose.shape).posed;
+      pose.shape = MeshSolid{std::make_shared<const PosedMesh>(mesh.shared_mesh(),
+                                                               (1 + 1e-3 * frame) * mesh.points())};
+      return pose;
+    };
     if (of.has_collider) {
-      inputs.colliders.push_back({pose(frame), pose(frame + 1), 0});
+      inputs.colliders.push_back(
+          {pose(frame), of.is_cached ? other_mesh(pose(frame + 1)) : pose(frame + 1), 0});
       inputs.motion = BodyMotion{};
     }
     const double begin = processor_seconds();
@@ -95,11 +150,22 @@ int main(int argc, char** argv) {
                     "contact [--sides 101,201] [--frames N]")) {
     return 2;
   }
+  const MeshSolid mesh = mesh_of_ball(0.1, 224, false), around = mesh_of_ball(1, 158, true);
   for (const int side : sides) {
     const Grid grid{side, side, 1.0 / (side - 1), 1.0 / (side - 1)};
     const std::vector<Case> cases = {
         {.name = "free", .has_collider = false, .load = 30},
         {.name = "near", .first = 0.2, .last = 0.15, .load = 0.1},
+        {.name = "near mesh", .shape = mesh, .first = 0.2, .last = 0.15, .load = 0.1},
+        {.name = "near cached",
+         .shape = mesh,
+         .first = 0.2,
+         .last = 0.15,
+         .load = 0.1,
+         .is_cached = true},
+        {.name = "around mesh", .shape = around, .load = 0.1},
+        {.name = "mesh ball", .shape = mesh, .first = 0.12, .last = 0.02},
+        {.name = "cached ball", .shape = mesh, .first = 0.12, .last = 0.02, .is_cached = true},
         {.name = "ball", .first = 0.12, .last = 0.02},
         {.name = "light ball", .first = 0.12, .last = 0.02, .density = 40},
         {.name = "floor", .shape = PlaneSolid{}, .first = -0.002, .last = -0.002, .load = 2000},

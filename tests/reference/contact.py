@@ -1,13 +1,14 @@
 """Colliders (docs/model.md, "Contact"): literally and slowly.
 
-First contacts are found by looking for the least of a convex function and halving intervals, forces by
-non-negative least squares.
+First contacts are found by looking for the least of a convex function and halving intervals, those with meshes by
+going no farther than is sure, forces by non-negative least squares.
 """
 
 import numpy as np
 import scipy.linalg
 import scipy.optimize
 
+from contact_mesh import ClosedMesh
 from forces import Transform, rotation
 
 GOLDEN = (np.sqrt(5) - 1) / 2
@@ -37,8 +38,12 @@ class Pose:
         self.translate = at["translate"]
         self.rotation = rotation(collider.rotate_order, at["rotate"])
         scale = np.abs(at["scale"])
-        self.lengths = np.zeros(5)  # size or radius and length, round, offset
-        if self.kind == "box":
+        self.lengths = np.zeros(5)  # size or radius and length, round, offset; the points of a mesh
+        if isinstance(self.kind, ClosedMesh):
+            ends = [self.kind.points_at(k) for k in (frame, frame + 1)]
+            points = ((1 - a) * ends[0] + a * ends[1]) * at["scale"]
+            self.lengths = np.concatenate([self.lengths, points.ravel()])
+        elif self.kind == "box":
             self.lengths[:3] = at["size"] * scale
             self.lengths[3] = at["round"][0]
         elif self.kind != "plane":
@@ -56,6 +61,9 @@ class Pose:
 def gap_and_normal(kind, lengths, x):
     """gamma and n (8q)."""
     offset = lengths[4]
+    if isinstance(kind, ClosedMesh):
+        near = kind.near(points_of(lengths), x)
+        return near.distance - offset, near.normal
     if kind == "plane":
         return x[1] - offset, np.array([0.0, 1.0, 0.0])
     if kind in ("sphere", "capsule"):
@@ -74,6 +82,47 @@ def gap_and_normal(kind, lengths, x):
     return length - lengths[3] - offset, way / length
 
 
+def points_of(lengths):
+    return lengths[5:].reshape(-1, 3)
+
+
+def least_gap(kind, lengths, x):
+    """gamma is not less: what is outside the box of a mesh is as far from it as from that."""
+    if not isinstance(kind, ClosedMesh):
+        return -np.inf
+    points = points_of(lengths)
+    way = np.maximum(np.maximum(points.min(axis=0) - x, x - points.max(axis=0)), 0)
+    return np.linalg.norm(way) - lengths[4] if way.any() else -np.inf
+
+
+def first_contact_with_mesh(mesh, before, after, x0, x1, slack):
+    """The same for a mesh, whose distance is not convex."""
+    def gap(t):
+        return gap_and_normal(mesh, (1 - t) * before + t * after, (1 - t) * x0 + t * x1)[0]
+
+    change = after - before
+    fastest = (np.linalg.norm(x1 - x0) + abs(change[4])
+               + np.linalg.norm(points_of(change), axis=1).max())
+    if least_gap(mesh, before, x0) > fastest or gap(0.0) > fastest:
+        return None
+    first, t, before_it = None, 0.0, 0.0
+    while True:
+        now = gap(t)
+        if now <= 0 and first is None:
+            low, high = before_it, t
+            for _ in range(60 if t > 0 else 0):
+                middle = (low + high) / 2
+                low, high = (middle, high) if gap(middle) > 0 else (low, middle)
+            first = high
+        if now < -slack:
+            return first
+        if t >= 1:
+            return None
+        if now > 0:
+            first = None
+        before_it, t = t, min(1.0, t + max(abs(now) / fastest if fastest > 0 else 1.0, 1 / 400))
+
+
 def support(kind, lengths, n):
     if kind == "plane":
         return 0.0
@@ -84,6 +133,9 @@ def support(kind, lengths, n):
 
 def first_contact(kind, before, after, x0, x1, slack):
     """t of the first contact on a straight way; None: there is none."""
+    if isinstance(kind, ClosedMesh):
+        return first_contact_with_mesh(kind, before, after, x0, x1, slack)
+
     def gap(t):
         return gap_and_normal(kind, (1 - t) * before + t * after, (1 - t) * x0 + t * x1)[0]
 
@@ -181,6 +233,8 @@ class FrameContact:
         for step in range(self.count + 1):
             pose = Pose(collider, self.frame, step / self.count)
             for index, point in self.places(self.world(step, w)):
+                if least_gap(pose.kind, pose.lengths, pose.to_frame(point)) >= radius:
+                    continue
                 gap, _ = gap_and_normal(pose.kind, pose.lengths, pose.to_frame(point))
                 chosen[index] |= max(gap, 0.0) < radius
         return chosen
@@ -199,7 +253,7 @@ class FrameContact:
                 if (index, k) in joined:
                     continue
                 x0, x1 = one.to_frame(before[index]), other.to_frame(after[index])
-                place = None
+                place, t = None, 0.0
                 if is_first and one.sticks:
                     gap, n = gap_and_normal(one.kind, one.lengths, x0)
                     if abs(gap) <= 1e3 * self.slack:
@@ -212,7 +266,15 @@ class FrameContact:
                     _, n = gap_and_normal(one.kind, (1 - t) * one.lengths + t * other.lengths, place)
                 joined.add((index, k))
                 normal = other.rotation @ n
-                height = support(other.kind, other.lengths, n) + other.lengths[4]
+                if isinstance(other.kind, ClosedMesh):
+                    # The point of the mesh that is touched carries it.
+                    points = points_of((1 - t) * one.lengths + t * other.lengths)
+                    touched = other.kind.near(points, place)
+                    carried = touched.at(points_of(other.lengths))
+                    place = place + carried - touched.at(points)
+                    height = n @ carried + other.lengths[4]
+                else:
+                    height = support(other.kind, other.lengths, n) + other.lengths[4]
                 found.append(Row(index, one, normal, height + normal @ other.translate,
                                  other.rotation @ place + other.translate))
         return found

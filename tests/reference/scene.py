@@ -11,6 +11,7 @@ import numpy as np
 
 from caches import Cache, NoCache
 from carrier import Carrier
+from contact_mesh import ClosedMesh
 from curves import Constant, Curve, Key
 from maps import node_uvs, read_holds, read_maps
 from triangle_mesh import TriangleMesh, read_obj_corners
@@ -39,7 +40,8 @@ SOLID_CHANNELS = {
     "sphere": {"radius": 1},
     "capsule": {"radius": 0.5, "length": 1},
     "box": {"size": (1, 1, 1), "round": 0},
-    "plane": {}}
+    "plane": {},
+    "mesh": {}}
 PLACES, DIRECTIONS = ("center", "from", "to"), ("direction", "axis")
 FALLOFFS = ("constant", "linear", "smooth", "gaussian")
 TANGENT_KINDS = ("auto", "spline", "flat", "linear", "plateau")
@@ -195,6 +197,17 @@ def read_surface(element, folder):
     assert set(element.keys()) <= {"file", "uv", "unit", "axis", "border", "weld"}
     vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
     return triangle_mesh(element, vertices, faces)
+
+
+def read_closed_mesh(element, folder, scene_start, fps):
+    """The <mesh> of a collider."""
+    assert set(element.keys()) <= {"file", "cache", "cacheStart"}
+    vertices, faces = read_obj_corners(os.path.join(folder, element.get("file")))
+    shape = NoCache(vertices)
+    if "cache" in element.keys():
+        first = float(element.get("cacheStart")) if "cacheStart" in element.keys() else None
+        shape = Cache(os.path.join(folder, element.get("cache")), fps, scene_start, first)
+    return ClosedMesh(vertices, faces, shape)
 
 
 def triangle_mesh(element, vertices, faces, unit=None):
@@ -377,7 +390,7 @@ class Group(Follower):
 class Collider:
     """A <collider>."""
 
-    def __init__(self, element):
+    def __init__(self, element, folder, scene_start, fps):
         self.name = element.get("name")
         self.targets = element.get("targets", "").split() if "targets" in element.keys() else None
         self.stick = read_channel(element, element, "stick", 0, is_boolean=True)
@@ -385,6 +398,8 @@ class Collider:
         shape, = (child for child in element if child.tag in SOLID_CHANNELS)
         transform = child_or_empty(element, "transform")
         self.kind, self.rotate_order = shape.tag, transform.get("rotateOrder", "xyz")
+        if shape.tag == "mesh":
+            self.kind = read_closed_mesh(shape, folder, scene_start, fps)
         self.channels = {name: read_channel(element, element, name, default)
                          for name, default in (("deformationRadius", 1), ("offset", 0), ("friction", 0))}
         for part, defaults in ((shape, SOLID_CHANNELS[shape.tag]), (transform, TRANSFORM_CHANNELS)):
@@ -412,7 +427,7 @@ class Scene:
             elif element.tag in KIND_CHANNELS:
                 self.forces.append(Force(element, False, seed))
             elif element.tag == "collider":
-                self.colliders.append(Collider(element))
+                self.colliders.append(Collider(element, folder, self.start, self.fps))
             else:
                 assert element.tag == "group", element.tag
                 self.groups.append(Group(element, seed))
