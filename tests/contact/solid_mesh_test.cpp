@@ -136,13 +136,27 @@ TEST_CASE("needles, triangles without area and corners between sides change no d
 TEST_CASE("what is flat everywhere has finite distances", "[contact][mesh]") {
   MeshSolid flat = box_mesh({1, 2, 0.6}, 2);
   for (const Vector3d& scale :
-       std::vector<Vector3d>{{1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {1, 1e-300, 1}}) {
+       std::vector<Vector3d>{{1, 0, 1}, {0, 0, 1}, {0, 0, 0}, {1, 1e-300, 1}, {1e-120, 1e-90, 1}}) {
     const MeshSolid solid{PosedMesh::scaled(flat.posed, scale)};
     for (const Vector3d& x :
          std::vector<Vector3d>{{0, 0, 0}, {0, 0.3, 0}, {3, 1, 2}, {0.5, 0, 0}}) {
       const MeshNearness found = near_mesh(solid, x);
       CHECK(std::isfinite(found.distance));
       CHECK_THAT(found.normal.norm(), WithinAbs(1, 1e-12));
+    }
+  }
+}
+
+TEST_CASE("lengths whose squares overflow end in no number that is not one", "[contact][mesh]") {
+  const MeshSolid box = box_mesh({1, 2, 0.6}, 2);
+  for (const double size : {1e80, 1e160, 1e300}) {
+    const MeshSolid solid{PosedMesh::scaled(box.posed, {size, size, size})};
+    const Kept kept{solid, 0};
+    for (const Vector3d& x : std::vector<Vector3d>{{0, 0, 0}, {3, 1, 2}}) {
+      const MeshNearness found = near_mesh(solid, size * x);
+      CHECK_FALSE(std::isnan(found.distance));
+      CHECK_FALSE(found.normal.hasNaN());
+      static_cast<void>(first_contact(kept, kept, size * x, -size * x, 1e-9));
     }
   }
 }

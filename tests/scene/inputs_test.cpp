@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pliant/scene/read.hpp"
+#include "pliant/scene/write.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 
@@ -59,6 +60,24 @@ TEST_CASE("a scene's inputs are all files that reading it opens", "[scene][input
     CHECK(inputs[k].file == expected[k].file);
     CHECK(inputs[k].role == expected[k].role);
   }
+}
+
+TEST_CASE("the mesh of a collider and its cache are inputs", "[scene][inputs]") {
+  const ScratchFolder folder;
+  folder.write("a.gltf", gltf_with({"a.bin"}));
+  const auto file = folder.write(
+      "scene.xml",
+      "<scene version=\"1\" start=\"1\" end=\"2\"><collider name=\"c\"><mesh file=\"a.gltf\" "
+      "cache=\"a.npy\"/></collider></scene>");
+  const Scene scene = load_scene(file).value();
+  const auto inputs = inputs_of(scene);
+  REQUIRE(inputs.size() == 4);
+  CHECK(inputs[1].file == folder.file("a.npy"));
+  CHECK(inputs[2].file == folder.file("a.gltf"));
+  CHECK(inputs[3].file == std::filesystem::canonical(folder.path()) / "a.bin");
+  // It is written as it was read.
+  const std::string text = to_xml(scene, folder.path().string()).value();
+  CHECK(parse_scene(text, "again.xml", folder.path().string()).value() == scene);
 }
 
 TEST_CASE("a scene's root is its folder, another one, or each mesh's own", "[scene][inputs]") {

@@ -553,6 +553,48 @@ TEST_CASE("no node enters a convex mesh, at any speed", "[simulation][contact][m
   }
 }
 
+TEST_CASE("contact with meshes has the same bits for every order of frames and number of threads",
+          "[simulation][contact][mesh][threads]") {
+  const ScratchFolder folder;
+  const MeshSolid star = star_mesh();
+  ClosedMesh still = write_mesh(folder, "star.obj", star), moving = still;
+  std::vector<Field> samples;
+  for (int k = 0; k < 13; ++k) {
+    Field points = star.posed->points();
+    points.col(0) *= 1 + 0.05 * k;
+    points.col(1) += 0.1 * std::sin(0.7 * k) * points.col(2);
+    samples.push_back(points);
+  }
+  moving.cache.path = write_cache(folder, "star.npy", samples);
+  std::vector<Collider> colliders;
+  for (const ClosedMesh& mesh : {still, moving}) {
+    const double side = colliders.empty() ? -2.2 : 2.2;
+    Collider one = collider(colliders.empty() ? "still" : "moving",
+                            {.translate = vector_curve({{1, {side, 3, 0}}, {6, {side, -0.5, 0.3}}}),
+                             .rotate = vector_curve({{1, {0, 0, 0}}, {12, {70, 20, 40}}})});
+    one.shape = mesh;
+    one.offset = 0.04;
+    colliders.push_back(one);
+  }
+  for (const SolvedRegion region : {SolvedRegion::All, SolvedRegion::Forces}) {
+    Surface mat = wide_mat(), other = wide_mat("t");
+    mat.solver.region = other.solver.region = region;
+    const Scene made = met_scene(mat, colliders, {weight_of(0.3)});
+    const std::vector<Field> expected = frames_met(made);
+    REQUIRE(peak(expected) > 0.1);
+    Scene both = made;
+    both.surfaces.push_back(other);
+    SimulationOptions options;
+    options.threads = 2;
+    auto again = Simulation::make(both, options).value();
+    for (const int frame : {12, 3, 7, 1, 9}) {
+      const Frame found = again.at(frame).value();
+      for (const char* name : {"s", "t"})
+        CHECK(found.surface(name).positions() == expected[static_cast<std::size_t>(frame - 1)]);
+    }
+  }
+}
+
 TEST_CASE("what the hollow of a mesh holds stays in it", "[simulation][contact][mesh]") {
   const ScratchFolder folder;
   // A bowl: a box out of which a smaller one is cut from above.

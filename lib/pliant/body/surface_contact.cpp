@@ -70,17 +70,23 @@ void ContactPlaces::pose(int step) {
 std::vector<double> ContactPlaces::depths(std::size_t collider, const Field& displacement) const {
   const SampledCollider& sampled = inputs_->colliders[collider];
   const bool is_later = has_moving_mesh(sampled);
-  std::vector<double> depths(static_cast<std::size_t>(displacement.rows()),
-                             -std::numeric_limits<double>::infinity());
+  const auto count = static_cast<std::size_t>(displacement.rows());
+  std::vector<double> depths(count, -std::numeric_limits<double>::infinity());
+  std::vector<NearMesh> near_meshes(std::holds_alternative<MeshSolid>(sampled.first.shape) ? count
+                                                                                           : 0);
   for (int step = 0; step <= step_count(); ++step) {
     const PlacedCollider one =
         is_later ? placed(sampled, double(step) / step_count()) : colliders_[step][collider];
-    for (Eigen::Index k = 0; k < displacement.rows(); ++k) {
-      const Vector3d w = displacement.row(k).transpose();
-      const Vector3d p = to_world(transforms_[step], Vector3d(rest(step, static_cast<int>(k)) + w));
-      const double distance = nearness(one.kept, one.to_frame(p)).distance;
-      double& depth = depths[static_cast<std::size_t>(k)];
-      depth = std::max(depth, sampled.deformation_radius - std::max(0.0, distance));
+    for (std::size_t k = 0; k < count; ++k) {
+      const Vector3d w = displacement.row(static_cast<Eigen::Index>(k)).transpose();
+      const Vector3d x =
+          one.to_frame(to_world(transforms_[step], Vector3d(rest(step, static_cast<int>(k)) + w)));
+      NearMesh* const near = near_meshes.empty() ? nullptr : &near_meshes[k];
+      const double nearest = sampled.deformation_radius - depths[k];
+      if (near && is_known_to_be_farther(one, x, nearest + one.kept.offset, *near)) continue;
+      const double distance =
+          near ? distance_to_mesh(one, x, *near) - one.kept.offset : nearness(one.kept, x).distance;
+      depths[k] = std::max(depths[k], sampled.deformation_radius - std::max(0.0, distance));
     }
   }
   return depths;

@@ -192,6 +192,10 @@ MeshNearness MeshWay::nearness(const Vector3d& x, double t, int near) const {
     open[count++] = first;
   }
   MeshNearness found;
+  if (best.place < 0) {  // squares of these lengths are not finite
+    found.distance = infinite;
+    return found;
+  }
   found.foot = {best.triangle, best.weights};
   const double side = from_.is_mirrored() ? -1 : 1;
   const Triangle of = triangle_at(best.place, t);
@@ -210,7 +214,8 @@ MeshNearness MeshWay::nearness(const Vector3d& x, double t, int near) const {
   const double sign = dot_of(way, normal) < 0 ? -1 : 1;
   const double size = std::sqrt(squared(normal));
   const double way_size = std::sqrt(squared(way));
-  const bool is_apart = distance > 1e-9 * from_.diagonal() && way_size > 0;
+  const bool is_apart =
+      distance > 1e-9 * from_.diagonal() && way_size > 0 && std::isfinite(way_size);
   found.distance = sign * distance;
   if (is_apart || !(size > 0)) {
     found.normal = way_size > 0 ? Vector3d(sign / way_size * way) : Vector3d(0, 1, 0);

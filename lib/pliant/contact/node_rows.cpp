@@ -24,25 +24,16 @@ double distance_to(const PosedMesh::Box& box, const Vector3d& x) {
   return length_of(way.transpose());
 }
 
-// The same as below. The distance where it was looked at, less the ways since, is no more than that
-// now.
+// The same as below.
 bool stays_away_from_mesh(const PlacedCollider& from, const PlacedCollider& to, const Vector3d& x0,
                           const Vector3d& x1, NearMesh& near) {
-  const PosedMesh &mesh = *std::get<MeshSolid>(from.kept.solid).posed,
-                  &next = *std::get<MeshSolid>(to.kept.solid).posed;
+  const PosedMesh& mesh = *std::get<MeshSolid>(from.kept.solid).posed;
   const double most = (length_of((x1 - x0).transpose()) + to.mesh_way - from.mesh_way +
                        std::abs(to.kept.offset - from.kept.offset)) *
                           (1 + 1e-9) +
                       1e-12 * mesh.diagonal() + from.kept.offset;
-  if (distance_to(mesh.box(0), x0) > most) return true;
-  if (near.triangle >= 0 &&
-      near.distance - (length_of((x0 - near.place).transpose()) + from.mesh_way - near.mesh_way) *
-                          (1 + 1e-9) >
-          most)
-    return true;
-  const MeshNearness found = MeshWay(mesh, next).nearness(x0, 0, near.triangle);
-  near = {found.foot.triangle, x0, found.distance, from.mesh_way};
-  return found.distance > most;
+  return distance_to(mesh.box(0), x0) > most || is_known_to_be_farther(from, x0, most, near) ||
+         distance_to_mesh(from, x0, near) > most;
 }
 
 // Whether a node is so far from a solid that it does not come near it: a distance changes at most
@@ -75,6 +66,21 @@ NodeRow row_at(const PlacedCollider& to, const Contact& contact) {
 }
 
 }  // namespace
+
+// The distance where it was looked at, less the ways since, is no more than that now.
+bool is_known_to_be_farther(const PlacedCollider& mesh, const Vector3d& x, double distance,
+                            const NearMesh& near) {
+  if (near.triangle < 0) return false;
+  const double ways = length_of((x - near.place).transpose()) + mesh.mesh_way - near.mesh_way;
+  return near.distance - ways * (1 + 1e-9) > distance;
+}
+
+double distance_to_mesh(const PlacedCollider& mesh, const Vector3d& x, NearMesh& near) {
+  const PosedMesh& posed = *std::get<MeshSolid>(mesh.kept.solid).posed;
+  const MeshNearness found = MeshWay(posed, posed).nearness(x, 0, near.triangle);
+  near = {found.foot.triangle, x, found.distance, mesh.mesh_way};
+  return found.distance;
+}
 
 double NodeRow::lack(const Vector3d& at) const { return height - dot_of(normal, at); }
 

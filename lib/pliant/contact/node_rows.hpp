@@ -29,6 +29,14 @@ struct NearMesh {
   double mesh_way = 0;         ///< as of the collider, then
 };
 
+/// Whether what is known of a mesh says that a place in the collider's frame is farther from it
+/// than `distance`.
+bool is_known_to_be_farther(const PlacedCollider& mesh, const Vector3d& x, double distance,
+                            const NearMesh& near);
+
+/// Looks for the signed distance to a mesh, without its offset. [length]
+double distance_to_mesh(const PlacedCollider& mesh, const Vector3d& x, NearMesh& near);
+
 /// The row of a node that touches on its way from `before` to `after`, world; null: it does not.
 /// docs/model.md, "Contact".
 std::optional<NodeRow> row_of(const PlacedCollider& from, const PlacedCollider& to,

@@ -130,8 +130,8 @@ class MeshWay {
   bool moves() const { return &from_ != &to_; }
 
   /// The signed distance by the closest place, of equally close ones that of the first triangle,
-  /// with the sign of its normal weighted by angles (J. A. Baerentzen, H. Aanaes, 2005). Faster if
-  /// the triangle `near` is near; -1: none is known.
+  /// with the sign of its normal weighted by angles (J. A. Baerentzen, H. Aanaes, 2005). Infinite
+  /// if squares of areas are. Faster if the triangle `near` is near; -1: none is known.
   MeshNearness nearness(const Vector3d& x, double t, int near = -1) const;
 
   Vector3d place(const MeshPlace& place, double t) const;
