@@ -150,6 +150,7 @@ int main(int argc, char** argv) {
                     "contact [--sides 101,201] [--frames N]")) {
     return 2;
   }
+  const MeshSolid hill = mesh_of_ball(5, 224, false);
   const MeshSolid mesh = mesh_of_ball(0.1, 224, false), around = mesh_of_ball(1, 158, true);
   for (const int side : sides) {
     const Grid grid{side, side, 1.0 / (side - 1), 1.0 / (side - 1)};
@@ -169,6 +170,12 @@ int main(int argc, char** argv) {
         {.name = "ball", .first = 0.12, .last = 0.02},
         {.name = "light ball", .first = 0.12, .last = 0.02, .density = 40},
         {.name = "floor", .shape = PlaneSolid{}, .first = -0.002, .last = -0.002, .load = 2000},
+        {.name = "mesh floor", .shape = hill, .first = -5.002, .last = -5.002, .load = 2000},
+        {.name = "ball floor",
+         .shape = SphereSolid{5},
+         .first = -5.002,
+         .last = -5.002,
+         .load = 2000},
         {.name = "wide floor",
          .shape = PlaneSolid{},
          .first = -0.002,

@@ -117,21 +117,21 @@ void SurfaceContact::begin_frame(ContactPlaces places,
 // What is known of a mesh holds in the next frame too, if that begins with it as this one ended.
 void SurfaceContact::keep_near_meshes() {
   if (sampled_.empty()) return;  // a frame without contact, or that has not begun
+  const auto count = static_cast<std::size_t>(places_.first_rest().rows());
   const bool has_mesh = std::ranges::any_of(sampled_, [](const SampledCollider& one) {
     return std::holds_alternative<MeshSolid>(one.first.shape);
   });
-  if (!has_mesh) {
+  if (!has_mesh || count == 0) {
     near_meshes_.clear();
     last_meshes_.clear();
     return;
   }
-  const auto count = static_cast<std::size_t>(places_.first_rest().rows());
   if (near_meshes_.size() != sampled_.size() * count) {
     near_meshes_.assign(sampled_.size() * count, {});
     last_meshes_.assign(sampled_.size(), {});
   }
   for (std::size_t c = 0; c < sampled_.size(); ++c) {
-    const auto [first, last] = std::pair(sampled_[c].first, sampled_[c].last);
+    const ColliderPose &first = sampled_[c].first, &last = sampled_[c].last;
     const auto* const mesh = std::get_if<MeshSolid>(&first.shape);
     LastMesh& before = last_meshes_[c];
     const bool goes_on =

@@ -71,7 +71,8 @@ NodeRow row_at(const PlacedCollider& to, const Contact& contact) {
 bool is_known_to_be_farther(const PlacedCollider& mesh, const Vector3d& x, double distance,
                             const NearMesh& near) {
   if (near.triangle < 0) return false;
-  const double ways = length_of((x - near.place).transpose()) + mesh.mesh_way - near.mesh_way;
+  const double ways =
+      length_of((x - near.place).transpose()) + std::abs(mesh.mesh_way - near.mesh_way);
   return near.distance - ways * (1 + 1e-9) > distance;
 }
 
