@@ -162,7 +162,7 @@ class WayToMesh {
   }
 
   // Where it came in, on the way from where it was outside to where it is inside.
-  Moment crossing(Moment inside) {
+  Moment crossing(const Moment& inside) {
     if (!(outside_.gap > 0)) return outside_;
     // A flat face is met in one step: the distance is linear there. Halving makes it end.
     constexpr int most_turns = 100;
@@ -173,7 +173,7 @@ class WayToMesh {
       double t = low.t + (high.t - low.t) * (low_weight / (low_weight - high_weight));
       if (turn % 3 == 2) t = (low.t + high.t) / 2;
       if (!(t > low.t && t < high.t)) break;
-      const Moment middle = at(t);
+      Moment middle = at(t);
       if (std::abs(middle.gap) <= enough) return middle;
       if (middle.gap > 0) {
         low = middle;
