@@ -77,6 +77,7 @@ bool is_known_to_be_farther(const PlacedCollider& mesh, const Vector3d& x, doubl
 }
 
 double distance_to_mesh(const PlacedCollider& mesh, const Vector3d& x, NearMesh& near) {
+  if (near.triangle >= 0 && near.place == x && near.mesh_way == mesh.mesh_way) return near.distance;
   const PosedMesh& posed = *std::get<MeshSolid>(mesh.kept.solid).posed;
   const MeshNearness found = MeshWay(posed, posed).nearness(x, 0, near.triangle);
   near = {found.foot.triangle, x, found.distance, mesh.mesh_way};
@@ -92,7 +93,9 @@ std::optional<NodeRow> row_of(const PlacedCollider& from, const PlacedCollider& 
   NearMesh& near = near_mesh ? *near_mesh : unknown;
   const Vector3d x0 = from.to_frame(before), x1 = to.to_frame(after);
   if (stays_away(from, to, x0, x1, near)) return std::nullopt;
-  const auto contact = first_contact(from.kept, to.kept, x0, x1, slack, near.triangle);
+  MeshBegin begin{near.triangle, {}};
+  if (near.triangle >= 0 && near.place == x0) begin.distance = near.distance;
+  const auto contact = first_contact(from.kept, to.kept, x0, x1, slack, begin);
   if (!contact) return std::nullopt;
   return row_at(to, *contact);
 }

@@ -100,9 +100,12 @@ class WayToMesh {
 
   Vector3d x_at(double t) const { return t < 1 ? Vector3d(x0_ + t * (x1_ - x0_)) : x1_; }
 
-  std::optional<Moment> first(int near) {
-    last_ = near;
-    const Moment begin = at(0);
+  std::optional<Moment> first(const MeshBegin& known) {
+    last_ = known.near;
+    Moment begin{0, known.distance.value_or(0) - offset0_, {}};
+    begin.near.foot.triangle = known.near;
+    // The normal is of use only where it is near.
+    if (!known.distance || !(begin.gap > 2 * slack_)) begin = at(0);
     if (begin.gap < -slack_) return begin;
     if (begin.gap <= 0 && at(1).gap < -slack_) return begin;
     last_ = begin.near.foot.triangle;
@@ -141,6 +144,7 @@ class WayToMesh {
       }
       if (now.gap > band) {
         const auto meets = mesh_.meeting(mover(slack_), now.t, end);
+        if (!meets && !mesh_.moves()) return std::nullopt;
         if (!meets) return at_end(end);
         last_ = meets->triangle;
         next = meets->t;
@@ -216,12 +220,12 @@ Nearness nearness(const Kept& kept, const Vector3d& x) {
 }
 
 std::optional<Contact> first_contact(const Kept& from, const Kept& to, const Vector3d& x0,
-                                     const Vector3d& x1, double slack, int near) {
+                                     const Vector3d& x1, double slack, const MeshBegin& begin) {
   if (!std::holds_alternative<MeshSolid>(from.solid))
     return first_contact_of_convex(from, to, x0, x1, slack);
   const MeshWay mesh = way_of(from, to);
   WayToMesh way(mesh, from, to, x0, x1, slack);
-  const auto first = way.first(near);
+  const auto first = way.first(begin);
   if (!first) return std::nullopt;
   return contact_with(mesh, first->near, way.x_at(first->t), first->t);
 }

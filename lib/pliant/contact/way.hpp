@@ -23,14 +23,20 @@ struct Contact {
                        ///< place that was touched [length]
 };
 
+/// What is known of a mesh where a way to it begins.
+struct MeshBegin {
+  int near = -1;                        ///< a triangle that is near; -1: none
+  std::optional<double> distance = {};  ///< signed, without the offset [length]
+};
+
 /// A node goes straight from `x0` to `x1` in the frame of a solid that changes evenly from `from`
 /// to `to`: where it first comes as near as the offset, at once if it begins there; null if it
 /// comes nowhere nearer than that by more than `slack`. The distance to a convex solid is a convex
 /// function of time, since support, place and offset change evenly: Newton's method on it does not
-/// pass its first zero. That to a mesh is the least of those to its triangles. `near`: a triangle
-/// of a mesh that is near; -1: none is known.
+/// pass its first zero. That to a mesh is the least of those to its triangles; `begin` is what is
+/// known of it at `x0`.
 std::optional<Contact> first_contact(const Kept& from, const Kept& to, const Vector3d& x0,
-                                     const Vector3d& x1, double slack, int near = -1);
+                                     const Vector3d& x1, double slack, const MeshBegin& begin = {});
 
 /// The contact of a node that is as near to a solid at the beginning as `near`; null: it is not.
 std::optional<Contact> lying_contact(const Kept& from, const Kept& to, const Vector3d& x,
