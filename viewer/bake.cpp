@@ -11,7 +11,6 @@
 
 #include "pliant/core/stoppable_sort.hpp"
 #include "pliant/feedback/surface_lines.hpp"
-#include "pliant/scene/collider_mesh.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/channels.hpp"
 #include "viewer/colliders.hpp"
@@ -201,18 +200,17 @@ Json messages_of(const Simulation& simulation) {
 
 Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
                           std::size_t max_memory) {
-  const double solids = static_cast<double>(simulation.scene().colliders.size()) *
-                        static_cast<double>(ColliderMesh::most_bytes);
-  std::size_t vertex_count =
-      solids > static_cast<double>(max_memory) ? 0 : moving_vertices(simulation.scene());
+  const auto solids = size_of_colliders(simulation);
+  if (!solids) return fail(solids.error());
+  std::size_t vertex_count = solids->moving_vertices;
   for (const RestShape& shape : simulation.rest_shapes()) {
     const int motions = shape.animation ? 2 : 1;
     vertex_count += static_cast<std::size_t>(motions) * shape.mesh.vertex_count();
   }
   // In addition to the packer's memory: the packed stream and its text in the page.
-  const double bytes = solids + static_cast<double>(frames.count()) *
-                                    static_cast<double>(vertex_count) *
-                                    static_cast<double>(MotionPacker::bytes_a_vertex + 14);
+  const double bytes = static_cast<double>(solids->bytes) +
+                       static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
+                           static_cast<double>(MotionPacker::bytes_a_vertex + 14);
   const double free = static_cast<double>(max_memory) -
                       static_cast<double>(std::min(max_memory, simulation.surface_memory()));
   if (bytes <= free) return {};
@@ -306,7 +304,7 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
                {"channels", *channels},
                {"messages", messages_of(simulation)}};
   if (!scene.colliders.empty()) {
-    auto colliders = view_colliders(scene, frames, arrays, limits.should_stop);
+    auto colliders = view_colliders(simulation, frames, arrays, limits.should_stop);
     if (!colliders) return fail(colliders.error());
     head["colliders"] = *std::move(colliders);
   }

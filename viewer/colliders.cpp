@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pliant/mesh/normals.hpp"
-#include "pliant/scene/collider_mesh.hpp"
+#include "pliant/sampling/drawn_collider.hpp"
 #include "viewer/forces.hpp"
 #include "viewer/mesh_order.hpp"
 #include "viewer/motion.hpp"
@@ -22,7 +22,7 @@ std::vector<float> numbers_of(const Field& points) {
 }
 
 // The mesh, where it is, and how its points move if they do.
-Result<void> add_mesh(const ColliderMesh& mesh, const FrameSpan& frames, Arrays& arrays,
+Result<void> add_mesh(const DrawnCollider& mesh, const FrameSpan& frames, Arrays& arrays,
                       const StopRequest& should_stop, Json& json) {
   std::vector<int> order(static_cast<std::size_t>(mesh.mesh().vertex_count()));
   std::iota(order.begin(), order.end(), 0);
@@ -31,12 +31,13 @@ Result<void> add_mesh(const ColliderMesh& mesh, const FrameSpan& frames, Arrays&
   bool is_moving = false;
   for (int frame = frames.first; mesh.moves_points() && frame <= frames.last; ++frame) {
     if (is_stopped(should_stop)) return interrupted();
-    const Field moved = mesh.at(frame).positions;
-    is_moving = is_moving || !are_equal(moved, points);
-    if (auto added = packer.add(moved, frame); !added) return added;
+    const auto moved = mesh.at(frame);
+    if (!moved) return fail(moved.error());
+    is_moving = is_moving || !are_equal(moved->positions, points);
+    if (auto added = packer.add(moved->positions, frame); !added) return added;
   }
   json["transforms"] =
-      track(frames, [&](int frame) { return to_json(make_transform(mesh.at(frame).placement)); });
+      track(frames, [&](int frame) { return to_json(make_transform(mesh.placement_at(frame))); });
   json["points"] = arrays.add(numbers_of(points));
   json["triangles"] = arrays.add(triangle_vertices(mesh.mesh()));
   if (is_flat(mesh.mesh())) json["isFlat"] = true;
@@ -57,10 +58,12 @@ Json plane_transforms(const Collider& collider, const FrameSpan& frames) {
 
 }  // namespace
 
-Result<Json> view_colliders(const Scene& scene, const FrameSpan& frames, Arrays& arrays,
+Result<Json> view_colliders(const Simulation& simulation, const FrameSpan& frames, Arrays& arrays,
                             const StopRequest& should_stop) {
   Json colliders = Json::array();
-  for (const Collider& collider : scene.colliders) {
+  const auto meshes = simulation.collider_meshes();
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    const Collider& collider = simulation.scene().colliders[k];
     if (is_stopped(should_stop)) return interrupted();
     Json json = {
         {"name", collider.name}, {"kind", shape_of(collider)}, {"targets", collider.targets}};
@@ -69,8 +72,10 @@ Result<Json> view_colliders(const Scene& scene, const FrameSpan& frames, Arrays&
       (name == "enabled" ? json : values)[std::string(name)] = track(frames, value_at);
     });
     json["values"] = std::move(values);
-    if (const auto mesh = ColliderMesh::make(collider, frames.first)) {
-      if (auto added = add_mesh(*mesh, frames, arrays, should_stop, json); !added)
+    const auto mesh = DrawnCollider::make(collider, frames.first, meshes[k]);
+    if (!mesh) return fail(mesh.error());
+    if (*mesh) {
+      if (auto added = add_mesh(**mesh, frames, arrays, should_stop, json); !added)
         return fail(added.error());
     } else {
       json["transforms"] = plane_transforms(collider, frames);
@@ -80,14 +85,19 @@ Result<Json> view_colliders(const Scene& scene, const FrameSpan& frames, Arrays&
   return colliders;
 }
 
-std::size_t moving_vertices(const Scene& scene) {
-  std::size_t count = 0;
-  for (const Collider& collider : scene.colliders) {
-    const auto mesh = ColliderMesh::make(collider, scene.start);
-    if (mesh && mesh->moves_points())
-      count += static_cast<std::size_t>(mesh->mesh().vertex_count());
+Result<ColliderSize> size_of_colliders(const Simulation& simulation) {
+  ColliderSize size;
+  const auto meshes = simulation.collider_meshes();
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    const auto mesh =
+        DrawnCollider::make(simulation.scene().colliders[k], simulation.scene().start, meshes[k]);
+    if (!mesh) return fail(mesh.error());
+    if (!*mesh) continue;
+    size.bytes += (*mesh)->bytes();
+    if ((*mesh)->moves_points())
+      size.moving_vertices += static_cast<std::size_t>((*mesh)->mesh().vertex_count());
   }
-  return count;
+  return size;
 }
 
 }  // namespace pliant::viewer

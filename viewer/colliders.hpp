@@ -4,7 +4,6 @@
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
-#include "pliant/scene/scene.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "viewer/arrays.hpp"
 
@@ -15,10 +14,16 @@ namespace pliant::viewer {
 ///
 /// An array with one object for each; docs/viewer.md has its members. Errors: NotFinite beyond
 /// single precision; Interrupted.
-Result<Json> view_colliders(const Scene& scene, const FrameSpan& frames, Arrays& arrays,
+Result<Json> view_colliders(const Simulation& simulation, const FrameSpan& frames, Arrays& arrays,
                             const StopRequest& should_stop = {});
 
-/// The vertices of those whose shape moves points, for the memory that their motion needs.
-std::size_t moving_vertices(const Scene& scene);
+/// What colliders need of a page.
+struct ColliderSize {
+  std::size_t bytes = 0;            ///< of their meshes
+  std::size_t moving_vertices = 0;  ///< of those whose shape moves points
+};
+
+/// Errors: those of the caches of meshes.
+Result<ColliderSize> size_of_colliders(const Simulation& simulation);
 
 }  // namespace pliant::viewer

@@ -31,7 +31,7 @@
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/pliant.hpp"
-#include "pliant/scene/collider_mesh.hpp"
+#include "pliant/sampling/drawn_collider.hpp"
 #include "pliant/scene/inputs.hpp"
 
 namespace pliant::cli {
@@ -137,7 +137,7 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
 struct Output {
   std::vector<std::size_t> surfaces;  // by their index in the scene
   std::unique_ptr<AnimationWriter> writer;
-  ColliderMeshes colliders = {};
+  DrawnColliders colliders = {};
   std::vector<SurfacePose> poses = {};  // of the surfaces, reused to avoid allocations
   Profile profile = {};                 // of the work in this file
 };
@@ -148,10 +148,11 @@ Result<Output> open_output(const Simulation& simulation, const BakeOptions& opti
   if (!chosen) return fail(chosen.error());
   auto plan = make_plan(simulation, options, frames, *chosen);
   if (!plan) return fail(plan.error());
-  ColliderMeshes colliders;
+  DrawnColliders colliders;
   if (!options.omits_colliders) {
     const std::size_t used = std::min(max_memory, simulation.surface_memory());
-    auto made = ColliderMeshes::make(simulation.scene(), *plan, max_memory - used);
+    auto made = DrawnColliders::make(simulation.scene(), simulation.collider_meshes(), *plan,
+                                     max_memory - used);
     if (!made) return fail(made.error());
     colliders = *std::move(made);
   }
@@ -202,7 +203,9 @@ Result<void> write_frame(const Frame& frame, const BakeOptions& options, const S
   }
   posing.stop();
   const StageTimer writing(profile, Stage::Writing);
-  return output.writer->write(frame.number(), output.poses, output.colliders.at(frame.number()));
+  auto colliders = output.colliders.at(frame.number());
+  if (!colliders) return fail(colliders.error());
+  return output.writer->write(frame.number(), output.poses, *std::move(colliders));
 }
 
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {

@@ -53,7 +53,8 @@ std::vector<ContactSummary> contact_summaries(const Scene& scene,
   std::vector<ContactSummary> summaries;
   const std::vector<SurfaceTargets> targets = targets_of(scene);
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
-    const double radius = least_radius(placed_at(scene.colliders[c], scene.start).kept.solid);
+    const std::optional<Solid> solid = solid_at(scene.colliders[c], scene.start);
+    const double radius = solid ? least_radius(*solid) : 0;
     for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
       if (!std::ranges::binary_search(targets[k].colliders, c)) continue;
       ContactSummary& summary = summaries.emplace_back();

@@ -27,7 +27,7 @@ struct ContactSummary {
   double largest_force = 0;  ///< on all nodes; on triangles without the area of a node
   int largest_force_frame = 0;
   /// The offset at which the faces between nodes do not enter it either: the square of the largest
-  /// spacing by 8 times the least radius. Null: it has sharp edges. [length]
+  /// spacing by 8 times the least radius. Null: it has sharp edges, or is a mesh. [length]
   std::optional<double> hiding_offset = {};
 };
 

@@ -338,8 +338,10 @@ void add_gaps(std::vector<Warning>& warnings, const Scene& scene, const Surface&
   const double spacing = spacing_of(scene, surface, shape).mean;
   for (const std::size_t k : targets.colliders) {
     const Collider& collider = scene.colliders[k];
-    const double radius = inner_radius(placed_at(collider, scene.start).kept.solid);
-    if (!is_on(collider.enabled) || !(spacing > radius)) continue;
+    const std::optional<Solid> solid = solid_at(collider, scene.start);
+    if (!is_on(collider.enabled) || !solid) continue;
+    const double radius = inner_radius(*solid);
+    if (!(spacing > radius)) continue;
     Warning& warning = warnings.emplace_back();
     warning.kind = Kind::PassesBetween;
     warning.surface = surface.name;

@@ -221,6 +221,17 @@ Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& c
   return std::shared_ptr<const ColliderMesh>(std::move(made));
 }
 
+Mesh ColliderMesh::drawn() const {
+  Mesh mesh;
+  mesh.positions = at_rest_->points();
+  for (const SolidMesh::Corners& corners : at_rest_->mesh().triangles()) {
+    mesh.face_sizes.push_back(3);
+    mesh.corner_vertices.insert(mesh.corner_vertices.end(), corners.begin(), corners.end());
+  }
+  mesh.corner_uvs.assign(mesh.corner_vertices.size(), -1);
+  return mesh;
+}
+
 Result<std::shared_ptr<const PosedMesh>> ColliderMesh::at(int frame) const {
   if (!animation_) return at_rest_;
   const auto nodes = animation_->nodes_at(frame);

@@ -29,6 +29,11 @@ class ColliderMesh {
   /// Without the collider's transform. Errors: those of `AnimatedShape::nodes_at`.
   Result<std::shared_ptr<const PosedMesh>> at(int frame) const;
 
+  bool is_animated() const { return animation_ != nullptr; }
+
+  /// The triangles with the points of `at_rest`, smooth, without (u,v).
+  Mesh drawn() const;
+
   /// As it is read, whatever its cache says.
   const std::shared_ptr<const PosedMesh>& at_rest() const { return at_rest_; }
 

@@ -225,12 +225,11 @@ void sample_colliders(const Scene& scene, const SceneSampling& sampling, std::si
     if (!collider.enabled.at(frame)) continue;
     const bool selects = surface.solver.region == SolvedRegion::Forces;
     const auto pose = [&](int at) {
-      return sample_pose(collider, at, sampling.mesh(k), *inputs.faults);
+      return sample_pose(collider, at, sampling.mesh(k).get(), *inputs.faults);
     };
-    inputs.body.colliders.push_back({pose(frame), pose(frame + 1),
-                                     selects ? collider.deformation_radius.at(frame)[0] : 0,
-                                     collider.friction.at(frame)[0], collider.stick.at(frame),
-                                     static_cast<int>(k)});
+    inputs.body.colliders.push_back(
+        {pose(frame), pose(frame + 1), selects ? collider.deformation_radius.at(frame)[0] : 0,
+         collider.friction.at(frame)[0], collider.stick.at(frame), static_cast<int>(k)});
   }
   if (inputs.body.colliders.empty()) return;
   inputs.body.motion = {surface.transform.placement_at(frame),
@@ -427,9 +426,11 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
           .shape = shape.now};
 }
 
-PlacedCollider placed_at(const Collider& collider, int frame) {
-  const ColliderPose pose = sample_pose(collider, frame);
-  return placed({pose, pose}, 0);
+std::optional<Solid> solid_at(const Collider& collider, int frame) {
+  if (std::holds_alternative<ClosedMesh>(collider.shape)) return std::nullopt;
+  ForceFaults none;
+  const ColliderPose pose = sample_pose(collider, frame, nullptr, none);
+  return placed({pose, pose}, 0).kept.solid;
 }
 
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,

@@ -77,7 +77,9 @@ class SceneSampling {
   }
 
   /// The mesh of a collider; null: it is none, or not told.
-  const ColliderMesh* mesh(std::size_t collider) const { return meshes_[collider].get(); }
+  const std::shared_ptr<const ColliderMesh>& mesh(std::size_t collider) const {
+    return meshes_[collider];
+  }
 
   const Carriers& carriers() const { return *carriers_; }
 
@@ -123,8 +125,8 @@ SampledForce sample_force(const Scene& scene, const Force& force, const Surface&
 SampledForce sample_group(const Scene& scene, const Group& group, int frame, ForceFaults& faults,
                           const Carriers& carriers);
 
-/// A collider as it stands in the world at a frame.
-PlacedCollider placed_at(const Collider& collider, int frame);
+/// The solid of a collider at a frame, its scale taken up; null: a mesh, which is in a file.
+std::optional<Solid> solid_at(const Collider& collider, int frame);
 
 /// A force or group as it is in the world at a frame: one that follows nothing, with the places and
 /// directions that it has there; itself if it follows nothing. Where nothing can carry it, it stays

@@ -115,6 +115,13 @@ Result<FrameReport> Simulation::report(int frame, ReportDetail detail) {
   return player_->report(frame, detail);
 }
 
+std::vector<std::shared_ptr<const ColliderMesh>> Simulation::collider_meshes() const {
+  std::vector<std::shared_ptr<const ColliderMesh>> meshes;
+  for (std::size_t k = 0; k < scene().colliders.size(); ++k)
+    meshes.push_back(player_->sampling().mesh(k));
+  return meshes;
+}
+
 const BodyState& Simulation::state(std::size_t surface) const {
   PLIANT_EXPECTS(surface < player_->bodies().size());
   return player_->bodies().all()[surface]->state();

@@ -25,6 +25,7 @@
 
 namespace pliant {
 
+class ColliderMesh;
 class Shelf;
 class StateStore;
 
@@ -132,6 +133,9 @@ class Simulation {
   /// The state of a surface, by its index in the scene, at the frame of the last `report`; before
   /// any, at the first frame.
   const BodyState& state(std::size_t surface) const;
+
+  /// The mesh of each collider that is one, null of the others: what `DrawnCollider` draws.
+  std::vector<std::shared_ptr<const ColliderMesh>> collider_meshes() const;
 
   /// The state at a frame as sealed bytes, to continue in another process with `restore`. Cost and
   /// errors: as `at`.

@@ -14,8 +14,8 @@
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
 #include "pliant/files/writer.hpp"
+#include "pliant/sampling/drawn_collider.hpp"
 #include "pliant/sampling/sampling.hpp"
-#include "pliant/scene/collider_mesh.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/sweep/sweep.hpp"
 
@@ -47,7 +47,8 @@ class TakeWriter {
                                .is_mirrored = transform.is_mirrored()});
     }
     const std::size_t used = std::min(max_memory, simulation.surface_memory());
-    auto colliders = ColliderMeshes::make(scene, plan, max_memory - used);
+    auto colliders =
+        DrawnColliders::make(scene, simulation.collider_meshes(), plan, max_memory - used);
     if (!colliders) return fail(colliders.error());
     plan.colliders = colliders->surfaces();
     auto writer = make_writer(plan);
@@ -61,18 +62,20 @@ class TakeWriter {
       poses_[k].positions = surface.positions(std::move(poses_[k].positions));
       poses_[k].is_mirrored = surface.transform().is_mirrored();
     }
-    return writer_->write(frame.number(), poses_, colliders_.at(frame.number()));
+    auto colliders = colliders_.at(frame.number());
+    if (!colliders) return fail(colliders.error());
+    return writer_->write(frame.number(), poses_, *std::move(colliders));
   }
 
   Result<void> finish() { return writer_->finish(); }
 
  private:
-  TakeWriter(std::unique_ptr<AnimationWriter> writer, ColliderMeshes colliders,
+  TakeWriter(std::unique_ptr<AnimationWriter> writer, DrawnColliders colliders,
              std::size_t surface_count)
       : writer_(std::move(writer)), colliders_(std::move(colliders)), poses_(surface_count) {}
 
   std::unique_ptr<AnimationWriter> writer_;
-  ColliderMeshes colliders_;
+  DrawnColliders colliders_;
   std::vector<SurfacePose> poses_;
 };
 

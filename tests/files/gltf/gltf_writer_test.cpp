@@ -16,7 +16,7 @@
 #include "pliant/files/boxed/read_assimp.hpp"
 #include "pliant/files/formats.hpp"
 #include "pliant/files/read_file.hpp"
-#include "pliant/mesh/solid_mesh.hpp"
+#include "pliant/mesh/drawn_solid.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "support/scratch_folder.hpp"

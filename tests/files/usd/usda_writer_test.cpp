@@ -5,7 +5,7 @@
 #include "pliant/files/formats.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/files/usd/usda_names.hpp"
-#include "pliant/mesh/solid_mesh.hpp"
+#include "pliant/mesh/drawn_solid.hpp"
 #include "support/catch.hpp"
 #include "support/scratch_folder.hpp"
 

@@ -1,6 +1,9 @@
-#include "pliant/scene/collider_mesh.hpp"
+#include "pliant/sampling/drawn_collider.hpp"
 
+#include <memory>
+#include <optional>
 #include <variant>
+#include <vector>
 
 #include "pliant/contact/collider.hpp"
 #include "pliant/core/transform.hpp"
@@ -13,7 +16,7 @@ using namespace pliant::testing;
 namespace {
 
 // As the engine has it, written once more.
-Solid solid_at(const Collider& collider, int frame) {
+Solid expected_solid(const Collider& collider, int frame) {
   if (const auto* sphere = std::get_if<SphereChannels>(&collider.shape))
     return SphereSolid{sphere->radius.at(frame)[0]};
   if (const auto* capsule = std::get_if<CapsuleChannels>(&collider.shape))
@@ -46,18 +49,19 @@ const char* const scene_text = R"(<scene version="1" start="1" end="9">
 
 }  // namespace
 
-TEST_CASE("a collider's mesh lies on the solid that surfaces meet", "[scene][collider_mesh]") {
+TEST_CASE("a collider's mesh lies on the solid that surfaces meet", "[sampling][drawn_collider]") {
   const Scene scene = scene_of(scene_text);
   for (const Collider& collider : scene.colliders) {
-    const auto mesh = ColliderMesh::make(collider, 3);
+    const std::optional<DrawnCollider> mesh = DrawnCollider::make(collider, 3).value();
     REQUIRE(mesh.has_value() == (collider.name != "floor"));
     if (!mesh) continue;
-    CHECK(are_equal(mesh->at(3).positions, mesh->mesh().positions));
+    CHECK(are_equal(mesh->at(3).value().positions, mesh->mesh().positions));
     for (int frame = 1; frame <= 9; ++frame) {
       CAPTURE(collider.name, frame);
-      const ColliderPose pose{solid_at(collider, frame), collider.transform.placement_at(frame), 0};
+      const ColliderPose pose{expected_solid(collider, frame),
+                              collider.transform.placement_at(frame), 0};
       const PlacedCollider placed = pliant::placed({pose, pose}, 0);
-      const SurfacePose shown = mesh->at(frame);
+      const SurfacePose shown = mesh->at(frame).value();
       CHECK(shown.is_shown == (collider.name != "gate" || frame < 5));
       CHECK(shown.placement.scale.minCoeff() > 0);
       const Field world = to_world(make_transform(shown.placement), shown.positions);
@@ -76,13 +80,14 @@ TEST_CASE("a collider's mesh lies on the solid that surfaces meet", "[scene][col
   }
 }
 
-TEST_CASE("colliders are written with the surfaces they meet", "[scene][collider_mesh]") {
+TEST_CASE("colliders are written with the surfaces they meet", "[sampling][drawn_collider]") {
   const Scene scene = scene_of(scene_text);
   const Mesh mesh;
+  const std::vector<std::shared_ptr<const ColliderMesh>> none(scene.colliders.size());
   const auto names = [&](std::vector<AnimatedSurface> surfaces) {
     std::string all;
     const AnimationPlan plan{.file = "a.glb", .surfaces = surfaces, .first_frame = 1};
-    const ColliderMeshes meshes = ColliderMeshes::make(scene, plan, 1 << 30).value();
+    const DrawnColliders meshes = DrawnColliders::make(scene, none, plan, 1 << 30).value();
     for (const AnimatedSurface& each : meshes.surfaces()) all += each.name + ' ';
     return all;
   };
@@ -90,12 +95,12 @@ TEST_CASE("colliders are written with the surfaces they meet", "[scene][collider
   CHECK(names({{"mat", &mesh, {}}, {"rug", &mesh, {}}}) == "ball arm crate pad gate ");
   // Within memory, and none in formats that do not contain them.
   AnimationPlan plan{.file = "a.glb", .surfaces = {{"mat", &mesh, {}}}};
-  const std::size_t enough = 4 * ColliderMesh::most_bytes;
-  CHECK(ColliderMeshes::make(scene, plan, enough));
-  const auto refused = ColliderMeshes::make(scene, plan, enough - 1);
+  const std::size_t enough = 4 * DrawnCollider::make(scene.colliders[0], 1).value()->bytes();
+  CHECK(DrawnColliders::make(scene, none, plan, enough));
+  const auto refused = DrawnColliders::make(scene, none, plan, enough - 1);
   REQUIRE_FALSE(refused);
   CHECK(refused.error().code == ErrorCode::OutOfMemory);
   CHECK_THAT(refused.error().message, contains_text("--no-colliders"));
   plan.file = "a.obj";
-  CHECK(ColliderMeshes::make(scene, plan, 0).value().surfaces().empty());
+  CHECK(DrawnColliders::make(scene, none, plan, 0).value().surfaces().empty());
 }

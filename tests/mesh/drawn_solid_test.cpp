@@ -1,4 +1,4 @@
-#include "pliant/mesh/solid_mesh.hpp"
+#include "pliant/mesh/drawn_solid.hpp"
 
 #include <cmath>
 #include <map>
@@ -18,7 +18,7 @@ namespace {
 
 struct Solid {
   SolidLengths lengths;
-  SolidMesh solid;
+  DrawnSolid solid;
 };
 
 std::vector<Solid> solids() {
@@ -44,7 +44,7 @@ double volume_of(const Mesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("the mesh of a solid is closed and turned outwards", "[mesh][solid_mesh]") {
+TEST_CASE("the mesh of a solid is closed and turned outwards", "[mesh][drawn_solid]") {
   for (const Solid& each : solids()) {
     const Mesh& mesh = each.solid.mesh;
     REQUIRE(check_mesh(mesh));
@@ -73,7 +73,7 @@ TEST_CASE("the mesh of a solid is closed and turned outwards", "[mesh][solid_mes
   }
 }
 
-TEST_CASE("the vertices of a solid lie on it, of whatever lengths", "[mesh][solid_mesh]") {
+TEST_CASE("the vertices of a solid lie on it, of whatever lengths", "[mesh][drawn_solid]") {
   for (const Solid& each : solids()) {
     const SolidLengths longer{1.7 * each.lengths.half, 0.6 * each.lengths.radius};
     for (const SolidLengths& lengths : {each.lengths, longer}) {
@@ -91,7 +91,7 @@ TEST_CASE("the vertices of a solid lie on it, of whatever lengths", "[mesh][soli
   }
 }
 
-TEST_CASE("a solid is shaded by its own normals", "[mesh][solid_mesh]") {
+TEST_CASE("a solid is shaded by its own normals", "[mesh][drawn_solid]") {
   for (const Solid& each : solids()) {
     const Mesh& mesh = each.solid.mesh;
     const Field normals = unit_normals(mesh, mesh.positions);

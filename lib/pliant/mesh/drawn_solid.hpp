@@ -13,7 +13,7 @@ struct SolidLengths {
 
 /// The mesh of such a solid, whose vertices and faces stay the same while its lengths change.
 /// Vertices lie on the solid, and faces are counter-clockwise seen from outside.
-struct SolidMesh {
+struct DrawnSolid {
   Mesh mesh;         ///< of the lengths it was made for, without (u,v)
   Field directions;  ///< #vertices x 3, of length 1 or 0: times the radius
   Field corners;     ///< #vertices x 3, -1, 0 or 1: times `half`
@@ -22,11 +22,11 @@ struct SolidMesh {
   Field positions(const SolidLengths& lengths) const;
 };
 
-SolidMesh make_ball_mesh(double radius);
+DrawnSolid make_ball_mesh(double radius);
 /// Its axis is along y.
-SolidMesh make_capsule_mesh(const SolidLengths& lengths);
-SolidMesh make_round_box_mesh(const SolidLengths& lengths);
+DrawnSolid make_capsule_mesh(const SolidLengths& lengths);
+DrawnSolid make_round_box_mesh(const SolidLengths& lengths);
 /// With hard edges: 8 vertices. Its radius is 0.
-SolidMesh make_sharp_box_mesh(const Vector3d& half);
+DrawnSolid make_sharp_box_mesh(const Vector3d& half);
 
 }  // namespace pliant

@@ -1,4 +1,4 @@
-#include "pliant/mesh/solid_mesh.hpp"
+#include "pliant/mesh/drawn_solid.hpp"
 
 #include <initializer_list>
 #include <vector>
@@ -22,10 +22,10 @@ struct Vertex {
   Vector3d direction, corner;
 };
 
-SolidMesh finished(Mesh mesh, const std::vector<Vertex>& vertices, const SolidLengths& lengths) {
-  SolidMesh solid{.mesh = std::move(mesh),
-                  .directions = Field(static_cast<Eigen::Index>(vertices.size()), 3),
-                  .corners = Field(static_cast<Eigen::Index>(vertices.size()), 3)};
+DrawnSolid finished(Mesh mesh, const std::vector<Vertex>& vertices, const SolidLengths& lengths) {
+  DrawnSolid solid{.mesh = std::move(mesh),
+                   .directions = Field(static_cast<Eigen::Index>(vertices.size()), 3),
+                   .corners = Field(static_cast<Eigen::Index>(vertices.size()), 3)};
   for (std::size_t k = 0; k < vertices.size(); ++k) {
     solid.directions.row(static_cast<Eigen::Index>(k)) = vertices[k].direction;
     solid.corners.row(static_cast<Eigen::Index>(k)) = vertices[k].corner;
@@ -126,7 +126,7 @@ struct RoundSolid {
   }
 };
 
-SolidMesh make_round(bool is_cut_y, bool is_cut_xz, int steps, const SolidLengths& lengths) {
+DrawnSolid make_round(bool is_cut_y, bool is_cut_xz, int steps, const SolidLengths& lengths) {
   RoundSolid solid{is_cut_y, is_cut_xz, steps};
   solid.make();
   return finished(std::move(solid.mesh), solid.vertices, lengths);
@@ -134,26 +134,26 @@ SolidMesh make_round(bool is_cut_y, bool is_cut_xz, int steps, const SolidLength
 
 }  // namespace
 
-Field SolidMesh::positions(const SolidLengths& lengths) const {
+Field DrawnSolid::positions(const SolidLengths& lengths) const {
   Field places(directions.rows(), 3);
   for (int k = 0; k < 3; ++k)
     places.col(k) = directions.col(k) * lengths.radius + corners.col(k) * lengths.half[k];
   return places;
 }
 
-SolidMesh make_ball_mesh(double radius) {
+DrawnSolid make_ball_mesh(double radius) {
   return make_round(false, false, ball_steps, {.radius = radius});
 }
 
-SolidMesh make_capsule_mesh(const SolidLengths& lengths) {
+DrawnSolid make_capsule_mesh(const SolidLengths& lengths) {
   return make_round(true, false, ball_steps, lengths);
 }
 
-SolidMesh make_round_box_mesh(const SolidLengths& lengths) {
+DrawnSolid make_round_box_mesh(const SolidLengths& lengths) {
   return make_round(true, true, edge_steps, lengths);
 }
 
-SolidMesh make_sharp_box_mesh(const Vector3d& half) {
+DrawnSolid make_sharp_box_mesh(const Vector3d& half) {
   Mesh mesh;
   std::vector<Vertex> vertices;
   for (int k = 0; k < 8; ++k) {
