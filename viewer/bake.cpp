@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <utility>
+#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -86,6 +87,20 @@ class SurfaceView {
     return motion_.add(frame.object_positions(), number);
   }
 
+  // Vertices of the nodes that colliders push at a frame.
+  void touch(const std::vector<ContactFacts>& contacts) {
+    if (!contacts.empty() && node_vertices_.empty()) node_vertices_ = node_vertices(shape_);
+    std::set<std::uint32_t> vertices;
+    for (const ContactFacts& facts : contacts) {
+      for (const int node : facts.nodes) {
+        const int vertex = node_vertices_[static_cast<std::size_t>(node)];
+        if (vertex >= 0) vertices.insert(static_cast<std::uint32_t>(vertex));
+      }
+    }
+    touching_.insert(touching_.end(), vertices.begin(), vertices.end());
+    touching_counts_.push_back(static_cast<std::uint32_t>(vertices.size()));
+  }
+
   SurfaceMarks& marks() { return marks_; }
   double peak_displacement() const { return peak_displacement_; }
 
@@ -133,6 +148,10 @@ class SurfaceView {
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     if (shape_.held) json["pins"] = arrays.add(held_vertices());
+    if (!touching_.empty()) {
+      json["touching"] = {{"counts", arrays.add(touching_counts_)},
+                          {"vertices", arrays.add(touching_)}};
+    }
     return json;
   }
 
@@ -172,6 +191,9 @@ class SurfaceView {
   std::optional<MotionPacker> rest_motion_;  // of a shape that is animated
   std::vector<Json> transforms_;
   SurfaceMarks marks_;
+  std::vector<int> node_vertices_;              // empty: nothing has touched
+  std::vector<std::uint32_t> touching_;         // frame after frame
+  std::vector<std::uint32_t> touching_counts_;  // of each frame
   double peak_displacement_ = 0;
   double peak_speed_ = 0;  // from the displacement since the frame before [length/s]
   Vector3d low_ = Vector3d::Constant(std::numeric_limits<double>::infinity());  // over all frames
@@ -246,6 +268,7 @@ Result<void> run_frames(Simulation& simulation, const FrameSpan& frames, const V
         if (auto added = surfaces[k].add(frame->surfaces()[k], number); !added) {
           return fail(added.error());
         }
+        surfaces[k].touch(report->surfaces[k].contacts);
         surfaces[k].marks().add(number, report->surfaces[k], force_numbers);
       }
       follower.add(*frame, rest);

@@ -52,6 +52,8 @@ interface SurfaceHead extends MotionHead {
   triangles: ArrayPlace;
   edges: ArrayPlace;
   pins?: ArrayPlace;
+  /** Vertices that colliders push, frame after frame, and how many at each. */
+  touching?: { counts: ArrayPlace; vertices: ArrayPlace };
   /** Of the shape at rest, if it is animated. */
   restMotion?: MotionHead;
   marks: Marks[];
@@ -181,6 +183,8 @@ function displace({ step, count, steps: all }: Motion, index: number, share: num
   }
 }
 
+const nothing = new Uint32Array();
+
 /** One surface over all frames. Object space, relative to `origin`. */
 export class BakedSurface {
   readonly rest: Float32Array;
@@ -189,6 +193,8 @@ export class BakedSurface {
   readonly edges: Uint32Array;
   /** A vertex of each held node. */
   readonly pins: Uint32Array;
+  /** Those that colliders push, of each frame; none: nothing touches. */
+  private readonly touching: Uint32Array[] = [];
   /** The node that each vertex moves as; -1: none. */
   readonly nodes: Int32Array;
   /** The first vertex of each node; -1: none. */
@@ -211,6 +217,11 @@ export class BakedSurface {
     this.triangles = whole(head.triangles);
     this.edges = whole(head.edges);
     this.pins = head.pins ? whole(head.pins) : new Uint32Array();
+    if (head.touching) {
+      const vertices = whole(head.touching.vertices);
+      let end = 0;
+      for (const count of whole(head.touching.counts)) this.touching.push(vertices.subarray(end, (end += count)));
+    }
     this.nodes = signed(head.nodes);
     this.nodeVertices = new Int32Array(head.columns * head.rows).fill(-1);
     for (let vertex = this.nodes.length; vertex-- > 0; ) {
@@ -252,6 +263,15 @@ export class BakedSurface {
   restDisplacementsAt(index: number, share: number, out: Float32Array): void {
     if (this.restMotion) displace(this.restMotion, index, share, out);
     else out.fill(0);
+  }
+
+  /** Vertices that colliders push at frame `index`. */
+  touchingAt(index: number): Uint32Array {
+    return this.touching[index] ?? nothing;
+  }
+
+  get isTouched(): boolean {
+    return this.touching.length > 0;
   }
 
   marksAt(frame: number): Marks | undefined {

@@ -41,6 +41,8 @@ export class SurfaceView {
   private readonly lines: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   /** On the held nodes. */
   readonly pins: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
+  /** On the nodes that colliders push at the frame shown. */
+  readonly dots: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
   private readonly restOffsets: Float32Array;
@@ -82,16 +84,21 @@ export class SurfaceView {
     this.lines = new THREE.LineSegments(wires, new THREE.LineBasicMaterial({ transparent: true }));
     this.lines.name = `${surface.head.name} mesh`;
 
-    const held = new THREE.BufferGeometry();
-    held.setAttribute("position", geometry.getAttribute("position"));
-    held.setIndex(new THREE.BufferAttribute(surface.pins, 1));
-    this.pins = new THREE.Points(held, pinMaterial());
-    this.pins.name = `${surface.head.name} pins`;
+    const points = (name: string, vertices: Uint32Array) => {
+      const some = new THREE.BufferGeometry();
+      some.setAttribute("position", geometry.getAttribute("position"));
+      some.setIndex(new THREE.BufferAttribute(vertices, 1));
+      const made = new THREE.Points(some, pinMaterial());
+      made.name = `${surface.head.name} ${name}`;
+      return made;
+    };
+    this.pins = points("pins", surface.pins);
+    this.dots = points("dots", new Uint32Array());
 
     this.group.name = `surface ${surface.head.name}`;
     this.group.matrixAutoUpdate = false;
-    this.group.add(this.mesh, this.lines, this.pins);
-    for (const object of [this.mesh, this.lines, this.pins]) object.frustumCulled = false; // vertices move
+    this.group.add(this.mesh, this.lines, this.pins, this.dots);
+    for (const object of [this.mesh, this.lines, this.pins, this.dots]) object.frustumCulled = false; // vertices move
   }
 
   /** Shows frame `index` plus `share` of the way to the next. */
@@ -105,6 +112,8 @@ export class SurfaceView {
     this.group.matrix.copy(placement(this.surface, index, share));
     this.group.matrixWorldNeedsUpdate = true;
     this.mesh.geometry.boundingSphere = null;
+    const touching = this.surface.touchingAt(index);
+    if (touching !== this.dots.geometry.index!.array) this.dots.geometry.setIndex(new THREE.BufferAttribute(touching, 1));
     this.turnNormals(array);
     this.measure(index, share);
   }
@@ -142,6 +151,7 @@ export class SurfaceView {
     this.mesh.material.depthWrite = style !== "wireframe";
     this.lines.visible = style !== "shaded";
     this.pins.material.color.set(palette.pin);
+    this.dots.material.color.set(palette.touch);
     const { material } = this.lines;
     material.vertexColors = style === "wireframe";
     material.color.set(style === "wireframe" ? 0xffffff : palette.mesh);
@@ -177,6 +187,8 @@ export class SurfaceView {
     this.lines.material.dispose();
     this.pins.geometry.dispose();
     this.pins.material.dispose();
+    this.dots.geometry.dispose();
+    this.dots.material.dispose();
   }
 
   private turnNormals(p: Float32Array): void {
