@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "pliant/body/mixing.hpp"
+#include "pliant/body/state_numbers.hpp"
+#include "pliant/core/anderson_mixing.hpp"
 #include "pliant/core/expects.hpp"
 
 namespace pliant {

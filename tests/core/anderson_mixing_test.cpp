@@ -1,4 +1,4 @@
-#include "pliant/body/mixing.hpp"
+#include "pliant/core/anderson_mixing.hpp"
 
 #include <Eigen/Dense>
 
@@ -38,7 +38,7 @@ LinearMap random_map(int n, double size) {
 }  // namespace
 
 TEST_CASE("on a linear map of n numbers the fixed point is found in n + 1 rounds",
-          "[body][mixing]") {
+          "[core][mixing]") {
   for (const int n : {1, 2, 5, 11}) {
     // Going round would never come there with a size of 4.
     for (const double size : {0.9, 4.0}) {
@@ -52,7 +52,7 @@ TEST_CASE("on a linear map of n numbers the fixed point is found in n + 1 rounds
   }
 }
 
-TEST_CASE("a short memory still comes closer than going round", "[body][mixing]") {
+TEST_CASE("a short memory still comes closer than going round", "[core][mixing]") {
   LinearMap map = random_map(30, 1);
   map.A = Eigen::VectorXd::LinSpaced(30, 0.1, 0.98).asDiagonal();
   AndersonMixing mixing(3);
@@ -64,7 +64,7 @@ TEST_CASE("a short memory still comes closer than going round", "[body][mixing]"
   CHECK(map.error(x) < 0.5 * map.error(plain));
 }
 
-TEST_CASE("without a past the next point is the image", "[body][mixing]") {
+TEST_CASE("without a past the next point is the image", "[core][mixing]") {
   const LinearMap map = random_map(4, 0.5);
   AndersonMixing mixing(5);
   const Numbers x = {1, -2, 3, 0.5}, image = map.image(x);
@@ -74,7 +74,7 @@ TEST_CASE("without a past the next point is the image", "[body][mixing]") {
   CHECK(mixing.next(x, image) == image);
 }
 
-TEST_CASE("what says nothing new is no direction", "[body][mixing]") {
+TEST_CASE("what says nothing new is no direction", "[core][mixing]") {
   AndersonMixing mixing(5);
   const Numbers x = {1, 2}, image = {3, 1};
   // The same point again, and a residual that is 0.
@@ -82,16 +82,4 @@ TEST_CASE("what says nothing new is no direction", "[body][mixing]") {
   CHECK(mixing.next(x, image) == image);
   CHECK(mixing.next(image, image) == image);
   CHECK(mixing.next(image, image) == image);
-}
-
-TEST_CASE("a state is its numbers, with velocities as lengths", "[body][mixing]") {
-  BodyState state{.positions = Field::Random(3, 3), .velocities = Field::Random(3, 3)};
-  state.unsettled = {1, 0, 1};
-  const Numbers numbers = numbers_of(state, 0.25);
-  REQUIRE(numbers.size() == 18);
-  CHECK(number_count(state) == 18);
-  CHECK(numbers[9] == 0.25 * state.velocities.data()[0]);
-  BodyState other{.positions = Field::Zero(3, 3), .velocities = Field::Zero(3, 3)};
-  other.unsettled = state.unsettled;
-  CHECK(with_numbers(other, 0.25, numbers) == state);
 }
