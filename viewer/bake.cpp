@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <utility>
-#include <set>
 #include <vector>
 
 #include <fmt/format.h>
@@ -90,14 +89,21 @@ class SurfaceView {
   // Vertices of the nodes that colliders push at a frame.
   void touch(const std::vector<ContactFacts>& contacts) {
     if (!contacts.empty() && node_vertices_.empty()) node_vertices_ = node_vertices(shape_);
-    std::set<std::uint32_t> vertices;
+    std::vector<std::uint32_t> vertices;
     for (const ContactFacts& facts : contacts) {
       for (const int node : facts.nodes) {
         const int vertex = node_vertices_[static_cast<std::size_t>(node)];
-        if (vertex >= 0) vertices.insert(static_cast<std::uint32_t>(vertex));
+        if (vertex >= 0) vertices.push_back(static_cast<std::uint32_t>(vertex));
       }
     }
-    touching_.insert(touching_.end(), vertices.begin(), vertices.end());
+    std::ranges::sort(vertices);
+    const auto repeated = std::ranges::unique(vertices);
+    vertices.erase(repeated.begin(), repeated.end());
+    std::uint32_t before = 0;
+    for (const std::uint32_t vertex : vertices) {
+      touching_steps_.push_back(vertex - before);
+      before = vertex;
+    }
     touching_counts_.push_back(static_cast<std::uint32_t>(vertices.size()));
   }
 
@@ -148,9 +154,9 @@ class SurfaceView {
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
     if (shape_.held) json["pins"] = arrays.add(held_vertices());
-    if (!touching_.empty()) {
+    if (!touching_steps_.empty()) {
       json["touching"] = {{"counts", arrays.add(touching_counts_)},
-                          {"vertices", arrays.add(touching_)}};
+                          {"steps", arrays.add(touching_steps_)}};
     }
     return json;
   }
@@ -191,9 +197,9 @@ class SurfaceView {
   std::optional<MotionPacker> rest_motion_;  // of a shape that is animated
   std::vector<Json> transforms_;
   SurfaceMarks marks_;
-  std::vector<int> node_vertices_;              // empty: nothing has touched
-  std::vector<std::uint32_t> touching_;         // frame after frame
-  std::vector<std::uint32_t> touching_counts_;  // of each frame
+  std::vector<int> node_vertices_;  // empty: nothing has touched
+  // Of each frame how many vertices touch; the steps to each from the one before, or from 0.
+  std::vector<std::uint32_t> touching_counts_, touching_steps_;
   double peak_displacement_ = 0;
   double peak_speed_ = 0;  // from the displacement since the frame before [length/s]
   Vector3d low_ = Vector3d::Constant(std::numeric_limits<double>::infinity());  // over all frames
@@ -229,10 +235,12 @@ Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
     const int motions = shape.animation ? 2 : 1;
     vertex_count += static_cast<std::size_t>(motions) * shape.mesh.vertex_count();
   }
-  // In addition to the packer's memory: the packed stream and its text in the page.
+  // In addition to the packer's memory: the packed stream and its text in the page. A dot is in two
+  // arrays, of which one may have twice the room, and in the stream.
+  const std::size_t of_dot = simulation.scene().colliders.empty() ? 0 : 16;
   const double bytes = static_cast<double>(solids->bytes) +
                        static_cast<double>(frames.count()) * static_cast<double>(vertex_count) *
-                           static_cast<double>(MotionPacker::bytes_a_vertex + 14);
+                           static_cast<double>(MotionPacker::bytes_a_vertex + 14 + of_dot);
   const double free = static_cast<double>(max_memory) -
                       static_cast<double>(std::min(max_memory, simulation.surface_memory()));
   if (bytes <= free) return {};

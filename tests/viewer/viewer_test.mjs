@@ -669,6 +669,86 @@ test("held nodes have pins that ride on the surface", async () => {
   assert.equal(pink("none"), 0);
 });
 
+/** A moving sheet that a load presses onto a ball and, round it, onto the floor; `colliders` is in their place. */
+const pressedScene = (colliders = `<collider name="ball"><sphere radius="3"/><transform translate="0 -3.1 0"/></collider>
+  <collider name="floor"><plane/><transform translate="0 -0.3 0"/></collider>`, load = 3000) => `<scene version="1" start="1" end="4">
+  <surface name="s"><grid columns="41" rows="41" width="10" depth="10"/><material density="0.002" damping="0.001"/>
+    <transform><animate attribute="translate"><key frame="1" value="0 0 0"/><key frame="4" value="0.3 0 0.1"/></animate></transform><solver region="all"/></surface>
+  <uniform name="pull" direction="0 -1 0" magnitude="${load}" forceRadius="99"/>${colliders}</scene>`;
+
+test("dots are on the nodes that colliders push, and ride on the surface", async () => {
+  const scene = inFolder("pressed.xml");
+  writeFileSync(scene, pressedScene());
+  run("bake", scene, "-o", "pressed.npy", "--regions", "pressed.json");
+  const contacts = JSON.parse(readFileSync(inFolder("pressed.json"), "utf8")).frames.map(({ surfaces }) => Object.fromEntries(surfaces[0].contacts.map(({ collider, nodes }) => [collider, nodes])));
+  await withPage(pageOf(scene), {}, async (page) => {
+    const dotsAt = async (frame) => {
+      await goTo(page, frame);
+      const dots = await page.evaluate(() => {
+        const [{ dots, mesh }] = window.pliant.viewer.views;
+        const { geometry } = dots;
+        const isRiding = geometry.getAttribute("position") === mesh.geometry.getAttribute("position") && dots.parent === mesh.parent;
+        return { isRiding, isVisible: dots.visible, vertices: [...geometry.index.array.slice(0, geometry.drawRange.count)] };
+      });
+      assert.ok(dots.isRiding);
+      return dots;
+    };
+    for (const frame of [2, 4, 1, 3]) {
+      const { ball = 0, floor = 0 } = contacts[frame - 1];
+      const { vertices, isVisible } = await dotsAt(frame);
+      assert.equal(vertices.length, ball + floor, `frame ${frame}`);
+      assert.equal(isVisible, frame > 1);
+      assert.deepEqual(vertices, [...new Set(vertices)].sort((a, b) => a - b));
+      const { positions } = await worldPositions(page, "s");
+      const places = vertices.map((vertex) => positions.slice(3 * vertex, 3 * vertex + 3));
+      const onFloor = places.filter(([, y]) => Math.abs(y + 0.3) < 1e-4);
+      assert.equal(onFloor.length, floor);
+      // What slides goes along a plane, a little above the ball.
+      for (const [x, y, z] of places.filter((place) => !onFloor.includes(place))) near(Math.hypot(x, y + 3.1, z), 3, 0.01, `place on the ball at ${frame}`);
+    }
+    assert.ok(contacts[2].ball > 4 && contacts[2].floor > 40, "it is not pressed");
+    const legend = () => page.locator("#legend-inks span").allTextContents();
+    assert.ok((await legend()).includes("touches"));
+    await page.keyboard.press("d");
+    await page.getByLabel("Colliders", { exact: true }).uncheck();
+    assert.equal((await dotsAt(3)).isVisible, false);
+    assert.equal((await legend()).includes("touches"), false);
+    await page.getByLabel("Colliders", { exact: true }).check();
+    assert.equal((await dotsAt(3)).isVisible, true);
+    for (const colorScheme of ["dark", "light"]) {
+      await page.emulateMedia({ colorScheme });
+      await page.waitForTimeout(100);
+      await page.screenshot({ path: path.join(pictures, `touching-${colorScheme}.png`) });
+    }
+  });
+  // Without contact, nothing speaks of it.
+  writeFileSync(inFolder("apart.xml"), pressedScene('<collider name="ball"><sphere/><transform translate="0 5 0"/></collider>'));
+  await withPage(pageOf(inFolder("apart.xml")), {}, async (page) => {
+    assert.equal(await page.evaluate(() => "touching" in window.pliant.viewer.bake.head.surfaces[0]), false);
+    assert.equal((await page.locator("#legend-inks span").allTextContents()).includes("touches"), false);
+  });
+});
+
+test("dots are seen on the surface, through a solid, and not crowded", async () => {
+  const scene = inFolder("dotted.xml");
+  const violet = (look, ...parts) => {
+    writeFileSync(scene, pressedScene(...parts));
+    run("view", scene, "--png", "dotted.png", "--size", "480x320", "--frame", "4", "--quiet", "--look", `legend=off&caption=off&labels=off&theme=light&colour=plain&gizmos=off&${look}`);
+    const pixels = pixelsOf("dotted.png");
+    let count = 0;
+    for (let k = 0; k < pixels.length; k += 3) count += pixels[k + 2] - pixels[k + 1] > 30 && pixels[k] - pixels[k + 1] > 15;
+    return count;
+  };
+  const dots = violet("tilt=40");
+  assert.ok(dots > 100, "no dots in the picture");
+  assert.ok(dots < 0.05 * 480 * 320, "they cover the surface");
+  assert.equal(violet("tilt=40&colliders=off"), 0);
+  // A ball above covers them.
+  const above = '<collider name="ball"><sphere radius="2"/><transform><animate attribute="translate"><key frame="1" value="0 2.2 0"/><key frame="4" value="0 0.5 0"/></animate></transform></collider>';
+  assert.ok(violet("tilt=80", above, 0) > 4, "no dots behind the ball");
+  assert.equal(violet("tilt=80&colliders=off", above, 0), 0);
+});
+
 /** A sheet and one collider of each kind, with keys. */
 const collidersScene = `<scene version="1" start="1" end="9">
   <surface name="s"><grid columns="9" rows="9" width="10" depth="10"/></surface>

@@ -52,8 +52,8 @@ interface SurfaceHead extends MotionHead {
   triangles: ArrayPlace;
   edges: ArrayPlace;
   pins?: ArrayPlace;
-  /** Vertices that colliders push, frame after frame, and how many at each. */
-  touching?: { counts: ArrayPlace; vertices: ArrayPlace };
+  /** How many vertices colliders push at each frame, and the steps to each from the one before, or from 0. */
+  touching?: { counts: ArrayPlace; steps: ArrayPlace };
   /** Of the shape at rest, if it is animated. */
   restMotion?: MotionHead;
   marks: Marks[];
@@ -195,6 +195,8 @@ export class BakedSurface {
   readonly pins: Uint32Array;
   /** Those that colliders push, of each frame; none: nothing touches. */
   private readonly touching: Uint32Array[] = [];
+  /** How many at one frame. */
+  readonly mostTouching: number = 0;
   /** The node that each vertex moves as; -1: none. */
   readonly nodes: Int32Array;
   /** The first vertex of each node; -1: none. */
@@ -218,9 +220,14 @@ export class BakedSurface {
     this.edges = whole(head.edges);
     this.pins = head.pins ? whole(head.pins) : new Uint32Array();
     if (head.touching) {
-      const vertices = whole(head.touching.vertices);
+      const vertices = whole(head.touching.steps).slice();
       let end = 0;
-      for (const count of whole(head.touching.counts)) this.touching.push(vertices.subarray(end, (end += count)));
+      for (const count of whole(head.touching.counts)) {
+        const those = vertices.subarray(end, (end += count));
+        for (let k = 1; k < count; ++k) those[k] += those[k - 1];
+        this.touching.push(those);
+        this.mostTouching = Math.max(this.mostTouching, count);
+      }
     }
     this.nodes = signed(head.nodes);
     this.nodeVertices = new Int32Array(head.columns * head.rows).fill(-1);
@@ -268,10 +275,6 @@ export class BakedSurface {
   /** Vertices that colliders push at frame `index`. */
   touchingAt(index: number): Uint32Array {
     return this.touching[index] ?? nothing;
-  }
-
-  get isTouched(): boolean {
-    return this.touching.length > 0;
   }
 
   marksAt(frame: number): Marks | undefined {

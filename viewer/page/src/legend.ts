@@ -38,7 +38,7 @@ export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
   add((display.hasGizmos || display.hasBoxes) && forces.length > 0, palette.force, "is pushed");
   add(display.hasRegions && bake.head.surfaces.some((surface) => surface.marks.length > 0), palette.rim, "is solved");
   add(display.hasGizmos && bake.surfaces.some((surface) => surface.pins.length > 0), palette.pin, "is held");
-  add(display.hasColliders && bake.surfaces.some((surface) => surface.isTouched), palette.touch, "touches");
+  add(display.hasColliders && bake.surfaces.some((surface) => surface.mostTouching > 0), palette.touch, "touches");
   const { colour } = display;
   if (colour === "plain") return inks.length > 0 ? { scale: null, inks } : null;
   const ramp = ramps[colour];

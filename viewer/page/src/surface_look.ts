@@ -27,6 +27,16 @@ export function sizeOf(positions: Float32Array): number {
   return Math.max(x, y, z);
 }
 
+/** The mean length of edges, each given by its two points. */
+export function meanLength(positions: Float32Array, edges: Uint32Array): number {
+  let sum = 0;
+  for (let k = 0; k < edges.length; k += 2) {
+    const [a, b] = [3 * edges[k], 3 * edges[k + 1]];
+    sum += Math.hypot(positions[b] - positions[a], positions[b + 1] - positions[a + 1], positions[b + 2] - positions[a + 2]);
+  }
+  return sum / Math.max(edges.length / 2, 1);
+}
+
 /** For geometries with the attributes `color` and `relief`. */
 export function surfaceMaterial(): THREE.MeshStandardMaterial {
   const material = new THREE.MeshStandardMaterial({
@@ -37,17 +47,38 @@ export function surfaceMaterial(): THREE.MeshStandardMaterial {
   return material;
 }
 
-/** Discs of a few pixels, slightly nearer than the surface, so that it does not hide them. */
-export function pinMaterial(): THREE.PointsMaterial {
+/** Discs of a few pixels, nearer by a hundredth of their distance, so that the surface does not hide them. `turn` changes the shader. */
+function discs(turn: (shader: THREE.WebGLProgramParametersWithUniforms) => void = () => {}): THREE.PointsMaterial {
   const material = new THREE.PointsMaterial({ size: 7, sizeAttenuation: false });
   material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace("#include <project_vertex>", "#include <project_vertex>\ngl_Position.z -= 0.0005 * gl_Position.w;");
+    shader.vertexShader = shader.vertexShader.replace("#include <project_vertex>", "#include <project_vertex>\ngl_Position = projectionMatrix * vec4(0.99 * mvPosition.xyz, 1.0);");
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <color_fragment>",
       "if (length(gl_PointCoord - 0.5) > 0.5) discard;\n#include <color_fragment>",
     );
+    turn(shader);
   };
+  material.customProgramCacheKey = () => turn.toString();
   return material;
+}
+
+export const pinMaterial = (): THREE.PointsMaterial => discs();
+
+/** Discs with a rim that do not cover each other on vertices which are `spacing` apart, object space. */
+export function dotMaterial(spacing: number, rim: THREE.Color): THREE.PointsMaterial {
+  return discs((shader) => {
+    Object.assign(shader.uniforms, { spacing: { value: spacing }, rim: { value: rim } });
+    shader.vertexShader = `uniform float spacing;\n${shader.vertexShader}`.replace(
+      "gl_PointSize = size;",
+      // `scale` is half the height of the picture, in pixels of which 7 are `size`.
+      `float grown = max(length(modelViewMatrix[0].xyz), max(length(modelViewMatrix[1].xyz), length(modelViewMatrix[2].xyz)));
+      gl_PointSize = size / 7.0 * clamp(0.85 * spacing * grown * projectionMatrix[1][1] / gl_Position.w * scale, 4.5, 8.0);`,
+    );
+    shader.fragmentShader = `uniform vec3 rim;\n${shader.fragmentShader}`.replace(
+      "#include <color_fragment>",
+      "if (length(gl_PointCoord - 0.5) > 0.36) diffuseColor.rgb = rim;\n#include <color_fragment>",
+    );
+  });
 }
 
 /** Colours of a ramp for the vertices' numbers; `low` has the bottom colour, `high` the top one. */

@@ -5,7 +5,7 @@ import * as THREE from "three";
 import { matrixBetween, type BakedSurface } from "./bake";
 import { bends } from "./relief";
 import { displacementRamp, signedRamp, velocityRamp, type Ramp } from "./ramp";
-import { paintNumbers, pinMaterial, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
+import { dotMaterial, meanLength, paintNumbers, pinMaterial, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
 import type { Palette } from "./theme";
 
 export type Style = "shaded" | "lines" | "wireframe";
@@ -43,6 +43,7 @@ export class SurfaceView {
   readonly pins: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
   /** On the nodes that colliders push at the frame shown. */
   readonly dots: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
+  private readonly dotsBehind: THREE.Points<THREE.BufferGeometry, THREE.PointsMaterial>;
   private readonly offsets: Float32Array;
   private readonly offsetsBefore: Float32Array;
   private readonly restOffsets: Float32Array;
@@ -50,6 +51,7 @@ export class SurfaceView {
   private readonly edgeCounts: Uint8Array;
   private readonly size: number;
   private plain = new THREE.Color();
+  private readonly dotRim = new THREE.Color();
 
   constructor(
     readonly surface: BakedSurface,
@@ -84,16 +86,22 @@ export class SurfaceView {
     this.lines = new THREE.LineSegments(wires, new THREE.LineBasicMaterial({ transparent: true }));
     this.lines.name = `${surface.head.name} mesh`;
 
-    const points = (name: string, vertices: Uint32Array) => {
+    const points = (name: string, vertices: Uint32Array, material: THREE.PointsMaterial) => {
       const some = new THREE.BufferGeometry();
       some.setAttribute("position", geometry.getAttribute("position"));
       some.setIndex(new THREE.BufferAttribute(vertices, 1));
-      const made = new THREE.Points(some, pinMaterial());
+      const made = new THREE.Points(some, material);
       made.name = `${surface.head.name} ${name}`;
       return made;
     };
-    this.pins = points("pins", surface.pins);
-    this.dots = points("dots", new Uint32Array());
+    this.pins = points("pins", surface.pins, pinMaterial());
+    const spacing = meanLength(surface.rest, surface.edges);
+    this.dots = points("dots", new Uint32Array(surface.mostTouching), dotMaterial(spacing, this.dotRim));
+    // What lies on a solid is behind it from most sides.
+    const hidden = Object.assign(dotMaterial(spacing, this.dotRim), { depthTest: false, transparent: true, opacity: 0.4 });
+    this.dotsBehind = new THREE.Points(this.dots.geometry, hidden);
+    this.dotsBehind.frustumCulled = false;
+    this.dots.add(this.dotsBehind);
 
     this.group.name = `surface ${surface.head.name}`;
     this.group.matrixAutoUpdate = false;
@@ -113,7 +121,10 @@ export class SurfaceView {
     this.group.matrixWorldNeedsUpdate = true;
     this.mesh.geometry.boundingSphere = null;
     const touching = this.surface.touchingAt(index);
-    if (touching !== this.dots.geometry.index!.array) this.dots.geometry.setIndex(new THREE.BufferAttribute(touching, 1));
+    const dotted = this.dots.geometry.index!;
+    (dotted.array as Uint32Array).set(touching);
+    dotted.needsUpdate = true;
+    this.dots.geometry.setDrawRange(0, touching.length);
     this.turnNormals(array);
     this.measure(index, share);
   }
@@ -151,7 +162,8 @@ export class SurfaceView {
     this.mesh.material.depthWrite = style !== "wireframe";
     this.lines.visible = style !== "shaded";
     this.pins.material.color.set(palette.pin);
-    this.dots.material.color.set(palette.touch);
+    for (const dots of [this.dots, this.dotsBehind]) dots.material.color.set(palette.touch);
+    this.dotRim.set(palette.background);
     const { material } = this.lines;
     material.vertexColors = style === "wireframe";
     material.color.set(style === "wireframe" ? 0xffffff : palette.mesh);
@@ -189,6 +201,7 @@ export class SurfaceView {
     this.pins.material.dispose();
     this.dots.geometry.dispose();
     this.dots.material.dispose();
+    this.dotsBehind.material.dispose();
   }
 
   private turnNormals(p: Float32Array): void {

@@ -133,7 +133,7 @@ export class Viewer {
       view.show(index, playback.share);
       view.paint(display.colour, this.ends());
       view.pins.visible = display.hasGizmos && view.surface.pins.length > 0;
-      view.dots.visible = display.hasColliders && view.dots.geometry.index!.count > 0;
+      view.dots.visible = display.hasColliders && view.dots.geometry.drawRange.count > 0;
       this.regions[k].show(playback.frame, display.hasRegions, display.hasBoxes, isIdle, isShown);
       for (const { force, push } of view.surface.marksAt(playback.frame)?.forces ?? []) {
         if (push) pushes.set(force, push);
