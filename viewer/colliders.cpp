@@ -21,26 +21,43 @@ std::vector<float> numbers_of(const Field& points) {
   return numbers;
 }
 
+// The page shows each vertex with one normal, or all faces flat. Where only some edges are hard, it
+// has a vertex for each normal; of these the vertices of the mesh.
+std::vector<int> split_at_hard_edges(Mesh& mesh) {
+  std::vector<int> vertices(static_cast<std::size_t>(mesh.vertex_count()));
+  std::iota(vertices.begin(), vertices.end(), 0);
+  if (mesh.corner_normals.empty() || is_flat(mesh)) return vertices;
+  vertices.resize(static_cast<std::size_t>(normal_count(mesh)));
+  for (std::size_t corner = 0; corner < mesh.corner_vertices.size(); ++corner)
+    vertices[static_cast<std::size_t>(mesh.corner_normals[corner])] = mesh.corner_vertices[corner];
+  mesh.positions = Field(mesh.positions(vertices, Eigen::all));
+  mesh.corner_vertices = mesh.corner_normals;
+  return vertices;
+}
+
 // The mesh, where it is, and how its points move if they do.
 Result<void> add_mesh(const DrawnCollider& mesh, const FrameSpan& frames, Arrays& arrays,
                       const StopRequest& should_stop, Json& json) {
-  std::vector<int> order(static_cast<std::size_t>(mesh.mesh().vertex_count()));
+  Mesh shown = mesh.mesh();
+  const std::vector<int> vertices = split_at_hard_edges(shown);
+  std::vector<int> order(vertices.size());
   std::iota(order.begin(), order.end(), 0);
-  const Field& points = mesh.mesh().positions;
+  const Field& points = shown.positions;
   MotionPacker packer(points, order);
   bool is_moving = false;
   for (int frame = frames.first; mesh.moves_points() && frame <= frames.last; ++frame) {
     if (is_stopped(should_stop)) return interrupted();
     const auto moved = mesh.at(frame);
     if (!moved) return fail(moved.error());
-    is_moving = is_moving || !are_equal(moved->positions, points);
-    if (auto added = packer.add(moved->positions, frame); !added) return added;
+    const Field places = moved->positions(vertices, Eigen::all);
+    is_moving = is_moving || !are_equal(places, points);
+    if (auto added = packer.add(places, frame); !added) return added;
   }
   json["transforms"] =
       track(frames, [&](int frame) { return to_json(make_transform(mesh.placement_at(frame))); });
   json["points"] = arrays.add(numbers_of(points));
-  json["triangles"] = arrays.add(triangle_vertices(mesh.mesh()));
-  if (is_flat(mesh.mesh())) json["isFlat"] = true;
+  json["triangles"] = arrays.add(triangle_vertices(shown));
+  if (is_flat(shown)) json["isFlat"] = true;
   if (!is_moving) return {};
   const auto motion = packer.pack(should_stop);
   if (!motion) return fail(motion.error());
@@ -95,7 +112,7 @@ Result<ColliderSize> size_of_colliders(const Simulation& simulation) {
     if (!*mesh) continue;
     size.bytes += (*mesh)->bytes();
     if ((*mesh)->moves_points())
-      size.moving_vertices += static_cast<std::size_t>((*mesh)->mesh().vertex_count());
+      size.moving_vertices += static_cast<std::size_t>(normal_count((*mesh)->mesh()));
   }
   return size;
 }

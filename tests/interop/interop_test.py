@@ -50,7 +50,8 @@ SCENE = """<scene version="1" fps="{fps}" start="1" end="{frames}">
 """
 SURFACES = ("relief-a", "relief_a")
 
-# A sheet and colliders: one grows by its scale, one by its points, one is switched off.
+# A sheet and colliders: one grows by its scale, one by its points, one is switched off, one is a mesh
+# that a cache moves and its scale mirrors.
 MET = """<scene version="1" fps="25" start="1" end="{frames}">
   <surface name="mat"><grid columns="31" rows="31" width="10" depth="10"/><material density="0.002" damping="0.001"/>
     <solver region="all"/></surface>
@@ -65,10 +66,16 @@ MET = """<scene version="1" fps="25" start="1" end="{frames}">
   <collider name="crate"><animate attribute="enabled"><key frame="1" value="true"/><key frame="6" value="false"/></animate>
     <box size="1 2 1.5"/><transform translate="-3 2 3" rotate="20 30 40" scale="1 1 2"/></collider>
   <collider name="pad"><box size="2 1 3" round="0.2"/><transform translate="3 1 2" scale="1 1.5 1"/></collider>
+  <collider name="rock"><mesh file="rock.obj" cache="rock.npy"/>
+    <transform scale="-1 1.5 0.5" rotate="0 30 0"><animate attribute="translate">
+      <key frame="1" value="0 2 3"/><key frame="{frames}" value="1 2.5 3"/></animate></transform></collider>
   <collider name="floor"><plane/><transform translate="0 -1 0"/></collider>
 </scene>
 """
-SOLIDS = ("ball-1", "arm", "crate", "pad")
+SOLIDS = ("ball-1", "arm", "crate", "pad", "rock")
+# A wedge, of triangles.
+ROCK = np.array([[-1, 0, -0.5], [1, 0, -0.5], [1, 0, 0.75], [-1, 0, 0.75], [-1, 1.25, 0], [1, 1.5, 0]])
+ROCK_FACES = ((0, 1, 2), (0, 2, 3), (0, 4, 5), (0, 5, 1), (3, 2, 5), (3, 5, 4), (0, 3, 4), (1, 5, 2))
 
 # Converts from Blender's axes, +z up: rows times this matrix.
 TO_Y_UP = np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
@@ -131,6 +138,10 @@ class Bakes:
         for ending in ("glb", "usda"):
             self.bake("film", f"object.{ending}", "object")
         self.bake("whole", "whole.glb", "object")
+        self.write("rock.obj", "".join(f"v {x} {y} {z}\n" for x, y, z in ROCK) +
+                   "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in ROCK_FACES))
+        self.rock = np.array([ROCK * (1 + 0.125 * frame) for frame in range(FRAMES)])
+        np.save(self.path("rock.npy"), self.rock)
         self.write("met.xml", MET.format(frames=FRAMES))
         for ending in ("glb", "usda"):
             self.bake("met", f"met.{ending}", "world")
@@ -320,6 +331,12 @@ class Interop(unittest.TestCase):
             pad = points_of("pad", frame)
             low, high = pad.min(axis=0), pad.max(axis=0)
             self.assertLess(np.abs(np.concatenate([low, high]) - [2, 0.25, 0.5, 4, 1.75, 3.5]).max(), 1e-5)
+            # A point with several normals may come as often.
+            rock = self.bakes.rock[frame - 1] * [-1, 1.5, 0.5]
+            turn = np.radians(30)
+            rock = rock @ np.array([[np.cos(turn), 0, -np.sin(turn)], [0, 1, 0], [np.sin(turn), 0, np.cos(turn)]])
+            way = np.linalg.norm(points_of("rock", frame)[:, None] - rock - self.value("rock.translate", frame), axis=2)
+            self.assertLess(max(way.min(axis=0).max(), way.min(axis=1).max()), 1e-5)
 
     def test_three_js_and_blender_move_the_colliders_of_gltf(self):
         seen = self.bakes.seen["browser", "gltf", "met.glb"]["surfaces"]
@@ -329,7 +346,7 @@ class Interop(unittest.TestCase):
         self.check_solids(lambda name, frame: rows(blender["positions"][name][frame - 1]) @ TO_Y_UP)
         for name in SOLIDS:
             self.assertEqual(blender["objects"][name]["materials"], ["collider"])
-            self.assertEqual(blender["objects"][name]["keys"] > 0, name == "arm")
+            self.assertEqual(blender["objects"][name]["keys"] > 0, name in ("arm", "rock"))
 
     def test_three_js_reads_the_colliders_of_usd(self):
         seen = self.bakes.seen["browser", "usd", "met.usda"]

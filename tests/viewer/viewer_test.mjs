@@ -813,6 +813,75 @@ test("colliders are solids that go with their keys", async () => {
   });
 });
 
+/** OBJ text of triangles: a closed prism round y with that many sides and radius 1, between the heights -1 and 1. */
+function prism(sides) {
+  const all = [...Array(sides).keys()];
+  const ring = (y) => all.map((k) => `v ${Math.cos((2 * Math.PI * k) / sides)} ${y} ${Math.sin((2 * Math.PI * k) / sides)}`);
+  const faces = all.flatMap((k) => {
+    const [low, next] = [k + 1, ((k + 1) % sides) + 1];
+    const caps = k < 2 ? [] : [`f 1 ${k} ${low}`, `f ${sides + 1} ${sides + low} ${sides + k}`];
+    return [`f ${low} ${sides + low} ${sides + next}`, `f ${low} ${sides + next} ${next}`, ...caps];
+  });
+  return [...ring(-1), ...ring(1), ...faces, ""].join("\n");
+}
+
+test("colliders that are meshes are those of their files, moved by their caches", async () => {
+  const scene = inFolder("meshes.xml");
+  writeFileSync(inFolder("can.obj"), prism(24));
+  writeFileSync(inFolder("post.obj"), prism(4));
+  // A cache that makes it larger from frame to frame: .mdd, big endian.
+  const still = prism(24).split("\n").filter((line) => line.startsWith("v")).map((line) => line.split(" ").slice(1).map(Number));
+  const frames = 4;
+  const cache = Buffer.alloc(8 + 4 * frames + 12 * frames * still.length);
+  cache.writeInt32BE(frames, 0);
+  cache.writeInt32BE(still.length, 4);
+  for (let frame = 0; frame < frames; ++frame) {
+    cache.writeFloatBE(frame / 24, 8 + 4 * frame);
+    still.flat().forEach((number, k) => cache.writeFloatBE((1 + 0.25 * frame) * number, 8 + 4 * frames + 4 * (3 * frame * still.length + k)));
+  }
+  writeFileSync(inFolder("can.mdd"), cache);
+  writeFileSync(scene, `<scene version="1" start="1" end="4"><surface name="s"><grid columns="21" rows="21" width="10" depth="10"/><solver region="all"/></surface>
+    <collider name="can"><mesh file="can.obj" cache="can.mdd"/><transform translate="-2 2.5 0"/></collider>
+    <collider name="post"><mesh file="post.obj"/><transform scale="-1 0.5 1" rotate="0 20 0"><animate attribute="translate">
+      <key frame="1" value="2 1 0"/><key frame="4" value="2 0.2 0"/></animate></transform></collider></scene>`);
+  const places = curve(scene, "post.translate");
+  await withPage(pageOf(scene), {}, async (page) => {
+    for (const frame of [1, 4, 2]) {
+      await goTo(page, frame);
+      const { can, post } = await solidsOf(page);
+      const size = 1 + 0.25 * (frame - 1);
+      const rings = can.map(([x, y, z]) => [Math.hypot(x + 2, z) / size, (y - 2.5) / size]);
+      for (const [radius, height] of rings) assert.ok(Math.abs(radius - 1) < 1e-4 && Math.abs(Math.abs(height) - 1) < 1e-4, `${radius} ${height}`);
+      const [, height] = places.get(frame);
+      const turn = (20 * Math.PI) / 180;
+      for (const [x, y, z] of post) {
+        const across = [Math.cos(turn) * (x - 2) - Math.sin(turn) * z, Math.sin(turn) * (x - 2) + Math.cos(turn) * z];
+        near(Math.max(...across.map(Math.abs)), 1, 1e-5, `post at ${frame}`);
+        near(Math.abs(y - height), 0.5, 1e-4, `post at ${frame}`);
+      }
+    }
+    // Walls of a can are smooth and its rims hard; all edges of a post are hard. Normals look outwards.
+    const normals = await page.evaluate(() =>
+      window.pliant.viewer.colliders.map(({ mesh }) => {
+        const [p, n] = ["position", "normal"].map((name) => mesh.geometry.getAttribute(name).array);
+        return Array.from({ length: p.length / 3 }, (_, k) => [[...p.slice(3 * k, 3 * k + 3)], [...n.slice(3 * k, 3 * k + 3)]]);
+      }));
+    assert.deepEqual(normals.map(({ length }) => length), [4 * 24, 6 * 4]);
+    for (const [p, n] of normals.flat()) {
+      const isRim = Math.abs(n[1]) > 0.5;
+      near(isRim ? n[1] * Math.sign(p[1]) : n[1], isRim ? 1 : 0, 1e-5, "normal");
+      assert.ok(isRim || p[0] * n[0] + p[2] * n[2] > 0.7 * Math.hypot(p[0], p[2]), "it looks inwards");
+    }
+    for (const [p, n] of normals[0].filter(([, each]) => Math.abs(each[1]) < 0.5)) near((p[0] * n[0] + p[2] * n[2]) / Math.hypot(p[0], p[2]), 1, 1e-3, "wall of the can");
+    await goTo(page, 4);
+    for (const colorScheme of ["dark", "light"]) {
+      await page.emulateMedia({ colorScheme });
+      await page.waitForTimeout(100);
+      await page.screenshot({ path: path.join(pictures, `meshes-${colorScheme}.png`) });
+    }
+  });
+});
+
 test("colliders are named, listed, and hidden", async () => {
   writeFileSync(inFolder("colliders.xml"), collidersScene);
   const url = pageOf(inFolder("colliders.xml"));

@@ -1,6 +1,7 @@
 #include "pliant/sampling/collider_mesh.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -149,6 +150,48 @@ std::size_t count_surfaces(const Collider& collider, const Scene& scene) {
       }));
 }
 
+// `Mesh::corner_normals` of triangles whose edges are hard where they turn by more than 40 degrees.
+std::vector<int> creased_normals(const PosedMesh& posed) {
+  constexpr double crease_cosine = 0.766;
+  const std::vector<SolidMesh::Corners>& triangles = posed.mesh().triangles();
+  const auto area_vector = [&](const SolidMesh::Corners& corners) {
+    const auto way_to = [&](int corner) -> Vector3d {
+      return (posed.points().row(corners[corner]) - posed.points().row(corners[0])).transpose();
+    };
+    return cross_of(way_to(1), way_to(2));
+  };
+  std::vector<int> normals(3 * triangles.size());  // of a corner one that shares its normal
+  std::iota(normals.begin(), normals.end(), 0);
+  const auto first_of = [&](int corner) {
+    while (normals[corner] != corner) corner = normals[corner] = normals[normals[corner]];
+    return corner;
+  };
+  bool is_smooth = true;
+  for (int k = 0; k < static_cast<int>(triangles.size()); ++k) {
+    const Vector3d one = area_vector(triangles[k]);
+    for (int corner = 0; corner < 3; ++corner) {
+      const int other_side = posed.mesh().neighbour(k, corner);
+      if (other_side < k) continue;
+      const SolidMesh::Corners& others = triangles[other_side];
+      const Vector3d other = area_vector(others);
+      const bool is_hard = one.dot(other) < crease_cosine * one.norm() * other.norm();
+      is_smooth = is_smooth && !is_hard;
+      for (const int end : {corner, (corner + 1) % 3}) {
+        const auto same = std::ranges::find(others, triangles[k][end]);
+        const int shared = 3 * other_side + static_cast<int>(same - others.begin());
+        // The lowest is the first of all that share.
+        const auto [low, high] = std::minmax({first_of(3 * k + end), first_of(shared)});
+        if (!is_hard) normals[high] = low;
+      }
+    }
+  }
+  if (is_smooth) return {};
+  int count = 0;
+  for (int corner = 0; corner < static_cast<int>(normals.size()); ++corner)
+    normals[corner] = normals[corner] == corner ? count++ : normals[normals[corner]];
+  return normals;
+}
+
 }  // namespace
 
 Result<std::shared_ptr<const ColliderMesh>> find_collider_mesh(const Collider& collider,
@@ -229,6 +272,7 @@ Mesh ColliderMesh::drawn() const {
     mesh.corner_vertices.insert(mesh.corner_vertices.end(), corners.begin(), corners.end());
   }
   mesh.corner_uvs.assign(mesh.corner_vertices.size(), -1);
+  mesh.corner_normals = creased_normals(*at_rest_);
   return mesh;
 }
 

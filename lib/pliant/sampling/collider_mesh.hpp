@@ -31,7 +31,8 @@ class ColliderMesh {
 
   bool is_animated() const { return animation_ != nullptr; }
 
-  /// The triangles with the points of `at_rest`, smooth, without (u,v).
+  /// The triangles with the points of `at_rest`, without (u,v). Edges at which it turns by more
+  /// than 40 degrees are hard.
   Mesh drawn() const;
 
   /// As it is read, whatever its cache says.

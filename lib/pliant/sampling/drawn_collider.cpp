@@ -97,8 +97,9 @@ bool DrawnCollider::moves_points() const {
 
 std::size_t DrawnCollider::bytes() const {
   constexpr std::size_t of_others = std::size_t{1} << 18U;
-  // Points as the engine and as a writer have them, faces, and what they take on their way.
-  constexpr std::size_t of_point = 200, of_corner = 40;
+  // Points as the engine and as a writer have them, faces, and what they take on their way. Where
+  // edges are hard a corner may have a normal and, in some formats, a point of its own.
+  constexpr std::size_t of_point = 200, of_corner = 140;
   if (!file_) return of_others;
   return static_cast<std::size_t>(mesh().vertex_count()) * of_point +
          mesh().corner_vertices.size() * of_corner;
