@@ -11,36 +11,27 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/memory_budget.hpp"
 #include "pliant/sampling/collider_mesh.hpp"
+#include "pliant/sampling/sampling.hpp"
 
 namespace pliant {
 namespace {
 
-// Round edges add no length, so that what is left of a box of round edges only is 0.
-Vector3d half_within(const Vector3d& size, double round) {
-  return (size / 2 - Vector3d::Constant(round)).cwiseMax(0);
+SolidLengths lengths_of(const Solid& solid) {
+  if (const auto* const sphere = std::get_if<SphereSolid>(&solid))
+    return {.radius = sphere->radius};
+  if (const auto* const capsule = std::get_if<CapsuleSolid>(&solid))
+    return {.half = {0, capsule->length / 2, 0}, .radius = capsule->radius};
+  const auto* const box = std::get_if<BoxSolid>(&solid);
+  if (!box) return {};
+  // Round edges add no length, so that what is left of a box of round edges only is 0.
+  return {.half = (box->size / 2 - Vector3d::Constant(box->round)).cwiseMax(0),
+          .radius = box->round};
 }
 
-// Without a scale. A plane has none.
+// Without a scale. Neither a plane nor a mesh has any.
 SolidLengths lengths_at(const Collider& collider, int frame) {
-  struct At {
-    int frame;
-
-    SolidLengths operator()(const SphereChannels& sphere) const {
-      return {.radius = sphere.radius.at(frame)[0]};
-    }
-    SolidLengths operator()(const CapsuleChannels& capsule) const {
-      return {.half = {0, capsule.length.at(frame)[0] / 2, 0},
-              .radius = capsule.radius.at(frame)[0]};
-    }
-    SolidLengths operator()(const BoxChannels& box) const {
-      const Value<3> size = box.size.at(frame);
-      const double round = box.round.at(frame)[0];
-      return {.half = half_within({size[0], size[1], size[2]}, round), .radius = round};
-    }
-    SolidLengths operator()(const PlaneChannels&) const { return {}; }
-    SolidLengths operator()(const ClosedMesh&) const { return {}; }
-  };
-  return std::visit(At{frame}, collider.shape);
+  const std::optional<Solid> shape = shape_at(collider, frame);
+  return shape ? lengths_of(*shape) : SolidLengths{};
 }
 
 bool is_sharp(const BoxChannels& box) { return box.round == Channel<1>(0); }
@@ -126,14 +117,11 @@ Result<Field> DrawnCollider::positions_at(int frame) const {
     if (!posed) return fail(posed.error());
     return (*posed)->points();
   }
-  const SolidLengths lengths = lengths_at(*collider_, frame);
-  if (std::holds_alternative<CapsuleChannels>(collider_->shape)) return solid_.positions(lengths);
+  if (std::holds_alternative<CapsuleChannels>(collider_->shape))
+    return solid_.positions(lengths_at(*collider_, frame));
   const auto* const box = std::get_if<BoxChannels>(&collider_->shape);
   if (!box || is_sharp(*box)) return solid_.positions(first_);
-  const Value<3> size = box->size.at(frame);
-  const Vector3d scale = collider_->transform.placement_at(frame).scale.cwiseAbs();
-  const Vector3d scaled = scale.cwiseProduct(Vector3d(size[0], size[1], size[2]));
-  return solid_.positions({half_within(scaled, lengths.radius), lengths.radius});
+  return solid_.positions(lengths_of(*solid_at(*collider_, frame)));
 }
 
 Result<SurfacePose> DrawnCollider::at(int frame) const {

@@ -182,37 +182,17 @@ struct SampleShape {
   }
 };
 
-Solid sample_solid(const Collider& collider, int frame, const ColliderMesh* mesh,
-                   ForceFaults& faults) {
-  struct Sample {
-    int frame;
-    const ColliderMesh* mesh;
-    ForceFaults& faults;
-
-    Solid operator()(const SphereChannels& sphere) const {
-      return SphereSolid{sphere.radius.at(frame)[0]};
-    }
-    Solid operator()(const CapsuleChannels& capsule) const {
-      return CapsuleSolid{capsule.radius.at(frame)[0], capsule.length.at(frame)[0]};
-    }
-    Solid operator()(const BoxChannels& box) const {
-      return BoxSolid{to_vector(box.size.at(frame)), box.round.at(frame)[0]};
-    }
-    Solid operator()(const PlaneChannels&) const { return PlaneSolid{}; }
-    Solid operator()(const ClosedMesh&) const {
-      PLIANT_EXPECTS(mesh != nullptr);
-      auto posed = mesh->at(frame);
-      if (posed) return MeshSolid{*std::move(posed)};
-      faults.add(posed.error().message);
-      return MeshSolid{mesh->at_rest()};
-    }
-  };
-  return std::visit(Sample{frame, mesh, faults}, collider.shape);
-}
-
 ColliderPose sample_pose(const Collider& collider, int frame, const ColliderMesh* mesh,
                          ForceFaults& faults) {
-  return {sample_solid(collider, frame, mesh, faults), collider.transform.placement_at(frame),
+  const auto posed_mesh = [&]() -> Solid {
+    PLIANT_EXPECTS(mesh != nullptr);
+    auto posed = mesh->at(frame);
+    if (posed) return MeshSolid{*std::move(posed)};
+    faults.add(posed.error().message);
+    return MeshSolid{mesh->at_rest()};
+  };
+  auto shape = shape_at(collider, frame);
+  return {shape ? *std::move(shape) : posed_mesh(), collider.transform.placement_at(frame),
           collider.offset.at(frame)[0]};
 }
 
@@ -424,6 +404,25 @@ BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
           .dt = surface.solver.dt.at(frame)[0],
           .forces = {},
           .shape = shape.now};
+}
+
+std::optional<Solid> shape_at(const Collider& collider, int frame) {
+  struct At {
+    int frame;
+
+    std::optional<Solid> operator()(const SphereChannels& sphere) const {
+      return SphereSolid{sphere.radius.at(frame)[0]};
+    }
+    std::optional<Solid> operator()(const CapsuleChannels& capsule) const {
+      return CapsuleSolid{capsule.radius.at(frame)[0], capsule.length.at(frame)[0]};
+    }
+    std::optional<Solid> operator()(const BoxChannels& box) const {
+      return BoxSolid{to_vector(box.size.at(frame)), box.round.at(frame)[0]};
+    }
+    std::optional<Solid> operator()(const PlaneChannels&) const { return PlaneSolid{}; }
+    std::optional<Solid> operator()(const ClosedMesh&) const { return std::nullopt; }
+  };
+  return std::visit(At{frame}, collider.shape);
 }
 
 std::optional<Solid> solid_at(const Collider& collider, int frame) {

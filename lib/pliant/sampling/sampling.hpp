@@ -125,7 +125,10 @@ SampledForce sample_force(const Scene& scene, const Force& force, const Surface&
 SampledForce sample_group(const Scene& scene, const Group& group, int frame, ForceFaults& faults,
                           const Carriers& carriers);
 
-/// The solid of a collider at a frame, its scale taken up; null: a mesh, which is in a file.
+/// The solid of a collider at a frame, without the scale; null: a mesh, which is in a file.
+std::optional<Solid> shape_at(const Collider& collider, int frame);
+
+/// The same, its scale taken up.
 std::optional<Solid> solid_at(const Collider& collider, int frame);
 
 /// A force or group as it is in the world at a frame: one that follows nothing, with the places and
