@@ -70,9 +70,6 @@ BAD_SCENES = {
     "contact without a shape at rest": (
         GRID, GRID + '<solver reference="none"/></surface><collider name="b"><sphere/></collider>'
         f'<surface name="other">{GRID}', 3, 'sheet.reference is "none", but the collider "b" acts on it'),
-    "contact of what yields": (
-        GRID, GRID + '<material yield="3"/></surface><collider name="b"><sphere/></collider>'
-        f'<surface name="other">{GRID}', 3, "does not meet colliders in this version"),
     "a hold of nothing": (GRID, GRID + "<hold/>", 3, "sheet.hold.0: a hold needs a file, an attribute or vertices"),
     "a hold of vertices and a threshold": (
         GRID, GRID + '<hold vertices="1" above="0.5"/>', 3, 'sheet.hold.0: a hold of vertices has no "above"'),

@@ -201,6 +201,11 @@ bool SurfaceContact::join(const Field& to) {
   return find(false);
 }
 
+void SurfaceContact::end_freely_at(const Field& to) {
+  place(step_ + 1, to, free_);
+  list_rows();
+}
+
 // Unknowns whose way may come near a collider, by unknown and collider.
 std::vector<SurfaceContact::Pair> SurfaceContact::near_pairs() const {
   const auto count = static_cast<Eigen::Index>(nodes_.size());

@@ -72,6 +72,7 @@ class SurfaceContact final : public StepContact {
 
   bool begin(int step, const Field& from, const Field& to) override;
   bool join(const Field& to) override;
+  void end_freely_at(const Field& to) override;
   const std::vector<ContactRow>& rows() const override { return rows_; }
   void end(const std::vector<Vector3d>& forces) override;
   double tolerance() const override;

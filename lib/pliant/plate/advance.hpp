@@ -16,10 +16,20 @@ namespace pliant {
 Result<PlateState> advance_in_steps(PlateSolver& solver, const PlateProblem& problem,
                                     const TimeSteps& steps, PlateState state);
 
+struct ContactMemory;
+
+/// What a plate that yields and meets solids needs besides.
+struct ContactHelp {
+  PlateSolver& whole;  ///< for steps in which something touches, as of `advance_with_contact`
+  ContactMemory& memory;
+};
+
 /// Advances a plate that yields: each step solves displacement and plastic curvatures together, to
-/// 1e-9 of the peak. Steps that yield nowhere have the bits of `solver.advance`. Requires:
-/// problem.law. Errors: those of the solver; SolverFailed if a step does not settle.
+/// 1e-9 of the peak. Steps that yield nowhere have the bits of `solver.advance`; those up to the
+/// first in which something touches are as without contact. Requires: problem.law; `help` if there
+/// is problem.contact. Errors: those of the solver; SolverFailed if a step does not settle.
 Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& problem,
-                                   const TimeSteps& steps, PlateState state);
+                                   const TimeSteps& steps, PlateState state,
+                                   const ContactHelp* help = nullptr);
 
 }  // namespace pliant

@@ -82,8 +82,12 @@ class AutomaticPlateSolver final : public PlateSolver {
       whole_ =
           transforms_ ? make_spectral_solver(context()) : make_sparse_solver(factor(), context());
     }
-    return advance_with_contact(solver, steps.are_reflected() ? *whole_ : solver, contact_memory_,
-                                problem, steps, std::move(state));
+    PlateSolver& whole = steps.are_reflected() ? *whole_ : solver;
+    if (problem.law) {
+      const ContactHelp help{whole, contact_memory_};
+      return advance_plastic(solver, problem, steps, std::move(state), &help);
+    }
+    return advance_with_contact(solver, whole, contact_memory_, problem, steps, std::move(state));
   }
 
   bool is_transformed(const Outline& outline, const Stiffness& stiffness, bool is_exact) const {

@@ -22,6 +22,10 @@ class Ground final : public StepContact {
     return add(to);
   }
   bool join(const Field& to) override { return add(to); }
+  void end_freely_at(const Field& to) override {
+    free_ = to;
+    for (ContactRow& row : rows_) row.lift = height_(row.unknown) - free_(row.unknown, 1);
+  }
   const std::vector<ContactRow>& rows() const override { return rows_; }
   void end(const std::vector<Vector3d>& forces) override {
     forces_.assign(static_cast<std::size_t>(free_.rows()), 0.0);

@@ -53,19 +53,9 @@ Result<ContactPlate> contact_plate(PlateSolver& solver, const PlateProblem& prob
   const StageTimer set_up(solver.context().profile, Stage::SetUp);
   if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
   StepTerms terms = solver.terms(problem, dt, displacement);
-  const auto upper = [system = problem.system(dt), shift = terms.shift,
-                      context = solver.context()]() -> Result<SparseMatrix> {
-    const GridAssembly assembly(system);
-    PlateMatrix matrix(context);
-    if (auto assembled = matrix.assemble(assembly); !assembled) return fail(assembled.error());
-    return matrix.shifted(shift);
-  };
-  return ContactPlate{
-      [&solver](const Field& forces) { return solver.solve(forces); },
-      {terms.known.rows(), [&solver](const Field& forces) { return solver.solve_roughly(forces); },
-       upper},
-      std::move(terms),
-      dt};
+  SolvedMatrix matrix = contact_matrix(solver, problem, dt, terms.shift);
+  return ContactPlate{[&solver](const Field& forces) { return solver.solve(forces); },
+                      std::move(matrix), std::move(terms), dt};
 }
 
 // The steps from `first` on, in which something touches.
@@ -95,6 +85,19 @@ Result<void> touch_on(PlateSolver& solver, PlateSolver& whole, ContactMemory& me
 }
 
 }  // namespace
+
+SolvedMatrix contact_matrix(PlateSolver& solver, const PlateProblem& problem, double dt,
+                            const Eigen::VectorXd& shift) {
+  const auto upper = [system = problem.system(dt), shift,
+                      context = solver.context()]() -> Result<SparseMatrix> {
+    const GridAssembly assembly(system);
+    PlateMatrix matrix(context);
+    if (auto assembled = matrix.assemble(assembly); !assembled) return fail(assembled.error());
+    return matrix.shifted(shift);
+  };
+  return {shift.size(), [&solver](const Field& forces) { return solver.solve_roughly(forces); },
+          upper};
+}
 
 void ContactMemory::keep_for(const PlateSystem& next) {
   if (system && *system == next) return;

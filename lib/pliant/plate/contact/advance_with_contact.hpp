@@ -26,6 +26,11 @@ struct ContactMemory {
   Complementarity problem;
 };
 
+/// The matrix of a step. Requires: the solver is prepared for it, and outlives it; `shift` are its
+/// terms' (#unknowns).
+SolvedMatrix contact_matrix(PlateSolver& solver, const PlateProblem& problem, double dt,
+                            const Eigen::VectorXd& shift);
+
 /// Advances a plate that meets solids. Steps up to the first in which something touches have the
 /// bits of `solver.advance`. A step of Newmark's in which something touches is one of backward
 /// Euler, of the same length, which is solved by `whole`; other steps by `solver`, which may be the

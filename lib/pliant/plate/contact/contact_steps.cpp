@@ -22,31 +22,6 @@ Result<Field> moved_by(const ContactPlate& plate, const StepContact& contact,
   return plate.solve(all);
 }
 
-// The forces of the rows, and what they move, corrected until those that push lack nothing: columns
-// may be rough.
-Result<Field> pushed(const ContactPlate& plate, Complementarity& problem,
-                     const StepContact& contact, const std::vector<double>& bounds,
-                     std::vector<Vector3d>& forces) {
-  constexpr int most_corrections = 4;
-  const std::vector<ContactRow>& rows = contact.rows();
-  auto found = problem.solve(rows, bounds, contact.tolerance(), plate.matrix);
-  if (!found) return fail(found.error());
-  forces = *std::move(found);
-  const Transform to_world_space{contact.to_world(), Vector3d::Zero()};
-  auto moved = moved_by(plate, contact, forces);
-  for (int turn = 0; moved && turn < most_corrections; ++turn) {
-    std::vector<Vector3d> ways;
-    for (const ContactRow& row : rows)
-      ways.push_back(to_world(to_world_space, Vector3d(moved->row(row.unknown).transpose())));
-    auto better = problem.answer_to(rows, ways, contact.tolerance(), plate.matrix);
-    if (!better) return fail(better.error());
-    if (better->empty()) break;
-    forces = *std::move(better);
-    moved = moved_by(plate, contact, forces);
-  }
-  return moved;
-}
-
 bool has_friction(const std::vector<ContactRow>& rows) {
   return std::ranges::any_of(rows,
                              [](const ContactRow& row) { return row.friction > 0 && !row.sticks; });
@@ -85,36 +60,74 @@ Result<Field> free_end(const ContactPlate& plate, const Motion& motion) {
   return plate.solve(sums);
 }
 
+// Corrected until those that push lack nothing: columns may be rough.
+Result<Field> pushed_by_contact(const ContactPlate& plate, Complementarity& problem,
+                                const StepContact& contact, const std::vector<double>& bounds,
+                                std::vector<Vector3d>& forces) {
+  constexpr int most_corrections = 4;
+  const std::vector<ContactRow>& rows = contact.rows();
+  auto found = problem.solve(rows, bounds, contact.tolerance(), plate.matrix);
+  if (!found) return fail(found.error());
+  forces = *std::move(found);
+  const Transform to_world_space{contact.to_world(), Vector3d::Zero()};
+  auto moved = moved_by(plate, contact, forces);
+  for (int turn = 0; moved && turn < most_corrections; ++turn) {
+    std::vector<Vector3d> ways;
+    for (const ContactRow& row : rows)
+      ways.push_back(to_world(to_world_space, Vector3d(moved->row(row.unknown).transpose())));
+    auto better = problem.answer_to(rows, ways, contact.tolerance(), plate.matrix);
+    if (!better) return fail(better.error());
+    if (better->empty()) break;
+    forces = *std::move(better);
+    moved = moved_by(plate, contact, forces);
+  }
+  return moved;
+}
+
+Result<Field> settle_contact(StepContact& contact, Complementarity& problem,
+                             const Balance& balance) {
+  std::vector<Vector3d> forces;
+  std::map<std::pair<int, int>, double> pressures;  // in the solve before
+  Field end;
+  const auto settle = [&](bool has_bounds) -> Result<void> {
+    do {
+      auto balanced = balance(
+          has_bounds ? bounds_of(contact.rows(), pressures) : std::vector<double>(), forces);
+      if (!balanced) return fail(balanced.error());
+      end = *std::move(balanced);
+    } while (contact.join(end));
+    return {};
+  };
+  problem.begin_step();
+  if (auto settled = settle(false); !settled) return fail(settled.error());
+  constexpr int rounds = 3;
+  for (int round = 0; round < rounds && has_friction(contact.rows()); ++round) {
+    pressures = pressures_of(contact.rows(), forces);
+    if (auto settled = settle(true); !settled) return fail(settled.error());
+  }
+  contact.end(forces);
+  return end;
+}
+
 Result<void> step_with_contact(const ContactPlate& plate, Complementarity& problem, int number,
                                StepContact& contact, Motion& motion) {
   Field& w = motion.displacement;
-  auto end = free_end(plate, motion);
-  if (!end) return fail(end.error());
-  const Field free = end->topRows(w.rows());
-  Field next = free;
-  bool touches = contact.begin(number, w, next);
-  std::vector<Vector3d> forces;
-  std::map<std::pair<int, int>, double> pressures;  // in the solve before
-  const auto settle = [&](bool has_bounds) -> Result<void> {
-    do {
-      const std::vector<double> bounds =
-          has_bounds ? bounds_of(contact.rows(), pressures) : std::vector<double>();
-      const auto moved = pushed(plate, problem, contact, bounds, forces);
+  auto all = free_end(plate, motion);
+  if (!all) return fail(all.error());
+  Field next = all->topRows(w.rows());
+  if (contact.begin(number, w, next)) {
+    const auto balance = [&](const std::vector<double>& bounds,
+                             std::vector<Vector3d>& forces) -> Result<Field> {
+      const auto moved = pushed_by_contact(plate, problem, contact, bounds, forces);
       if (!moved) return fail(moved.error());
-      next = free + moved->topRows(w.rows());
-    } while (contact.join(next));
-    return {};
-  };
-  if (touches) {
-    problem.begin_step();
-    if (auto settled = settle(false); !settled) return settled;
-    constexpr int rounds = 3;
-    for (int round = 0; round < rounds && has_friction(contact.rows()); ++round) {
-      pressures = pressures_of(contact.rows(), forces);
-      if (auto settled = settle(true); !settled) return settled;
-    }
+      return Field(all->topRows(w.rows()) + moved->topRows(w.rows()));
+    };
+    auto end = settle_contact(contact, problem, balance);
+    if (!end) return fail(end.error());
+    next = *std::move(end);
+  } else {
+    contact.end({});
   }
-  contact.end(forces);
   motion.velocity = (next - w) / plate.dt;
   w = std::move(next);
   return {};
@@ -122,13 +135,14 @@ Result<void> step_with_contact(const ContactPlate& plate, Complementarity& probl
 
 Result<bool> stands_without_contact(const ContactPlate& half, int number, StepContact& contact,
                                     Motion& motion) {
-  const auto end = free_end(half, motion);
-  if (!end) return fail(end.error());
+  const auto all = free_end(half, motion);
+  if (!all) return fail(all.error());
   Field& w = motion.displacement;
-  Field next = 2 * *end - w;
+  const auto end = all->topRows(w.rows());
+  Field next = 2 * end - w;
   if (contact.begin(number, w, next)) return false;
   contact.end({});
-  motion.velocity = 2 * (*end - w) / half.dt - motion.velocity;
+  motion.velocity = 2 * (end - w) / half.dt - motion.velocity;
   w = std::move(next);
   return true;
 }

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "pliant/core/result.hpp"
 #include "pliant/core/run_context.hpp"
 #include "pliant/plate/contact/complementarity.hpp"
@@ -21,6 +24,21 @@ struct ContactPlate {
 
 /// The displacement in which a step of backward Euler ends without contact.
 Result<Field> free_end(const ContactPlate& plate, const Motion& motion);
+
+/// What the forces of the present rows move, #unknowns x 3, with so much friction; `forces`: these.
+/// Errors: those of the plate; SolverFailed if they are not found; Interrupted.
+Result<Field> pushed_by_contact(const ContactPlate& plate, Complementarity& problem,
+                                const StepContact& contact, const std::vector<double>& bounds,
+                                std::vector<Vector3d>& forces);
+
+/// The displacement in which a step ends with the present rows, and their forces.
+using Balance =
+    std::function<Result<Field>(const std::vector<double>& bounds, std::vector<Vector3d>& forces)>;
+
+/// The displacement in which a step ends that has begun to touch: rows join until none does, and
+/// friction has its rounds. Errors: those of `balance`.
+Result<Field> settle_contact(StepContact& contact, Complementarity& problem,
+                             const Balance& balance);
 
 /// Step `number` of a plate that meets solids, in its interval: of all displacements that keep the
 /// rows, the one of least energy. If nothing touches it is `free_end`. Errors: those of the plate;

@@ -35,6 +35,9 @@ class StepContact {
   /// The same step ends elsewhere: whether more touches on that way. Then the rows have changed.
   virtual bool join(const Field& to) = 0;
 
+  /// Without contact the step would end elsewhere than `begin` was told: rows are from there now.
+  virtual void end_freely_at(const Field& to) = 0;
+
   /// By unknowns, ascending, and in the order in which they joined.
   virtual const std::vector<ContactRow>& rows() const = 0;
 

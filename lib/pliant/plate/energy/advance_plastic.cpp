@@ -1,4 +1,6 @@
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -6,6 +8,7 @@
 #include "pliant/core/expects.hpp"
 #include "pliant/core/stage_timer.hpp"
 #include "pliant/plate/advance.hpp"
+#include "pliant/plate/contact/advance_with_contact.hpp"
 #include "pliant/plate/energy/plastic_plate.hpp"
 #include "pliant/plate/energy/plastic_steps.hpp"
 
@@ -20,16 +23,19 @@ struct Progress {
   int steps = 0;
 };
 
-// Goes on from step to step as long as none yields.
+// Goes on from step to step as long as none yields, and nothing touches.
 class ElasticSteps {
  public:
-  ElasticSteps(const PlasticPlate& plate, const TimeSteps& steps, const PlateState& from)
+  ElasticSteps(const PlasticPlate& plate, const PlateProblem& problem, const TimeSteps& steps,
+               const PlateState& from)
       : plate_(plate),
+        outline_(problem.outline),
+        contact_(problem.contact),
         steps_(steps),
         plastic_(from.plastic),
         done_{from.displacement, from.velocity} {}
 
-  // Whether the step to `next` was elastic.
+  // Whether the step to `next` was elastic, and nothing touched.
   bool take(const Field& next) {
     const double dt = steps_.solved_length();
     Field& w = done_.displacement;
@@ -39,6 +45,10 @@ class ElasticSteps {
       for (const int k : plate_.components()) solved.col(k) = (next.col(k) + w.col(k)) / 2;
       if (plate_.yields(solved, plastic_)) return false;
     } else if (plate_.yields(next, plastic_)) {
+      return false;
+    }
+    if (contact_ &&
+        contact_->begin(done_.steps, interior_of(outline_, w), interior_of(outline_, next))) {
       return false;
     }
     for (const int k : plate_.components()) {
@@ -57,6 +67,8 @@ class ElasticSteps {
 
  private:
   const PlasticPlate& plate_;
+  const Outline& outline_;
+  StepContact* contact_;  // null: nothing is there to touch
   const TimeSteps& steps_;
   const PlasticField& plastic_;
   Progress done_;
@@ -120,29 +132,113 @@ PlateProblem held(const PlateProblem& problem, const PlasticPlate& plate,
   return elastic;
 }
 
+// Makes the steps of a plate.
+class FlowingSteps {
+ public:
+  FlowingSteps(const PlasticPlate& plate, const PlateProblem& problem, const Field& held)
+      : plate_(plate), problem_(problem), held_(held) {}
+
+  Result<void> make(PlateSolver& solver, const TimeSteps& steps, std::vector<int> components,
+                    const PlasticField& plastic) {
+    const StageTimer set_up(solver.context().profile, Stage::SetUp);
+    const double dt = steps.solved_length();
+    if (auto ready = solver.prepare(problem_.system(dt)); !ready) return fail(ready.error());
+    StepTerms terms = solver.terms(problem_, dt, held_);
+    shift_ = terms.shift;
+    steps_.reset();
+    flowing_.emplace(solver, plate_, problem_.outline, held_);
+    steps_ = make_plastic_steps(*flowing_, solver.context(), std::move(terms),
+                                problem_.law->hardening, steps, std::move(components), plastic);
+    return {};
+  }
+
+  void forget() { steps_.reset(); }
+  bool are_made() const { return steps_ != nullptr; }
+  PlasticSteps& operator*() { return *steps_; }
+  PlasticSteps* operator->() { return steps_.get(); }
+  const Eigen::VectorXd& shift() const { return shift_; }
+
+ private:
+  const PlasticPlate& plate_;
+  const PlateProblem& problem_;
+  const Field& held_;
+  std::optional<FlowingGrid> flowing_;
+  std::unique_ptr<PlasticSteps> steps_;
+  Eigen::VectorXd shift_;
+};
+
+// The steps from `first` on, in which something touches. A step of Newmark's that touches is one of
+// backward Euler; what one of the two makes flow the other one has to know.
+Result<void> meet_on(PlateSolver& solver, const ContactHelp& help, const PlateProblem& problem,
+                     const TimeSteps& steps, int first, const Field& held, Motion& motion,
+                     PlasticField& plastic) {
+  const std::vector<int> all = {0, 1, 2};
+  const PlasticPlate plate(problem, all, kernels_of_width(solver.context().most_lanes));
+  const TimeSteps whole_steps{.count = steps.count, .length = steps.length};
+  FlowingSteps whole(plate, problem, held), half(plate, problem, held);
+  help.memory.keep_for(problem.system(steps.length));
+  for (int number = first; number < steps.count; ++number) {
+    if (solver.context().is_stopped()) return interrupted();
+    if (steps.are_reflected() && number > first) {
+      if (!half.are_made()) {
+        if (auto made = half.make(solver, steps, all, plastic); !made) return made;
+      }
+      Motion tried = motion;
+      PlasticField flowed = plastic;
+      if (auto stepped = half->step(tried, flowed); !stepped) return fail(stepped.error());
+      if (!problem.contact->begin(number, motion.displacement, tried.displacement)) {
+        problem.contact->end({});
+        motion = std::move(tried);
+        plastic = std::move(flowed);
+        whole.forget();
+        continue;
+      }
+    }
+    if (!whole.are_made()) {
+      if (auto made = whole.make(help.whole, whole_steps, all, plastic); !made) return made;
+    }
+    const PlasticContact with{*problem.contact, help.memory.problem,
+                              contact_matrix(help.whole, problem, steps.length, whole.shift())};
+    if (auto met = whole->meet(number, with, motion, plastic); !met) return met;
+    half.forget();
+  }
+  return {};
+}
+
 // Steps that flow from `first` on. If that one does not, nothing happens, and none is done.
 Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const PlateProblem& problem,
-                     const TimeSteps& steps, int first, bool is_expected, PlateState& state) {
+                     const TimeSteps& steps, int first, bool is_expected, PlateState& state,
+                     const ContactHelp* help) {
   const double dt = steps.solved_length();
   const Outline& outline = problem.outline;
-  StageTimer set_up(solver.context().profile, Stage::SetUp);
-  if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
-  StepTerms terms = solver.terms(problem, dt, state.displacement);
-  set_up.stop();
+  const Field& held = state.displacement;
   const StageTimer solving(solver.context().profile, Stage::Solve);
   Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
   PlasticField& plastic = state.plastic;  // grows with the first step that flows
-  FlowingGrid flowing(solver, plate, outline, state.displacement);
-  const auto all = make_plastic_steps(flowing, solver.context(), std::move(terms),
-                                      problem.law->hardening, steps, plate.components(), plastic);
+  FlowingSteps all(plate, problem, held);
+  if (auto made = all.make(solver, steps, plate.components(), plastic); !made)
+    return fail(made.error());
   if (is_expected) {
     all->expect(motion.displacement + dt * motion.velocity,
                 motion.displacement + steps.count * dt * motion.velocity, plastic);
   }
-  auto flowed = all->step(motion, plastic);
-  if (!flowed || (is_expected && !*flowed)) return flowed;
-  auto ran = run_plastic_steps(*all, steps.count - first - 1, motion, plastic);
-  if (!ran) return fail(ran.error());
+  for (int number = first; number < steps.count; ++number) {
+    const Motion before = help ? motion : Motion();
+    const PlasticField plastic_before = help ? plastic : PlasticField();
+    const auto flowed = all->step(motion, plastic);
+    if (!flowed) return flowed;
+    if (number == first && is_expected && !*flowed) return false;
+    if (!help) continue;
+    if (problem.contact->begin(number, before.displacement, motion.displacement)) {
+      motion = before;
+      plastic = plastic_before;
+      all.forget();
+      auto met = meet_on(solver, *help, problem, steps, number, held, motion, plastic);
+      if (!met) return fail(met.error());
+      break;
+    }
+    problem.contact->end({});
+  }
   state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
   state.velocity = with_interior(outline, std::move(state.velocity), motion.velocity);
   return true;
@@ -151,8 +247,10 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
 }  // namespace
 
 Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& problem,
-                                   const TimeSteps& steps, PlateState state) {
+                                   const TimeSteps& steps, PlateState state,
+                                   const ContactHelp* help) {
   PLIANT_EXPECTS(problem.law && state.plastic.rows() == problem.load.rows());
+  PLIANT_EXPECTS((problem.contact != nullptr) == (help != nullptr));
   clear_rim(problem.outline, state.velocity);
   const PlasticPlate plate(problem,
                            components_at_work(problem.tangents, problem.load, state.displacement,
@@ -161,12 +259,13 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
   // A plate that goes on as it moves and yields then is not tried elastically.
   const Field next = state.displacement + steps.solved_length() * state.velocity;
   if (plate.yields(next, state.plastic)) {
-    const auto flowed = flow_on(solver, plate, problem, steps, 0, true, state);
+    const auto flowed = flow_on(solver, plate, problem, steps, 0, true, state, help);
     if (!flowed) return fail(flowed.error());
     if (*flowed) return state;
   }
   PlateProblem elastic = held(problem, plate, state.plastic);
-  ElasticSteps elastic_steps(plate, steps, state);
+  elastic.contact = nullptr;
+  ElasticSteps elastic_steps(plate, problem, steps, state);
   bool yields = false;
   const std::function<bool(const Field&)> watch = [&](const Field& displacement) {
     yields = !elastic_steps.take(displacement);
@@ -182,7 +281,7 @@ Result<PlateState> advance_plastic(PlateSolver& solver, const PlateProblem& prob
   Progress& done = elastic_steps.done();
   state.displacement = std::move(done.displacement);
   state.velocity = std::move(done.velocity);
-  const auto flowed = flow_on(solver, plate, problem, steps, done.steps, false, state);
+  const auto flowed = flow_on(solver, plate, problem, steps, done.steps, false, state, help);
   if (!flowed) return fail(flowed.error());
   return state;
 }

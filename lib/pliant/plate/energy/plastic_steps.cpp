@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/anderson_mixing.hpp"
+#include "pliant/core/expects.hpp"
 #include "pliant/plate/energy/flowing_places.hpp"
 #include "pliant/plate/kernels/kernels.hpp"
 
@@ -116,6 +118,7 @@ class EquilibriumSteps final : public PlasticSteps {
         kernels_(kernels_of_width(context.most_lanes)),
         terms_(std::move(terms)),
         shortest_way_(shortest_way(hardening)),
+        nearest_(1e-10 * std::min(1.0, std::max(hardening, 0.01))),
         steps_(steps),
         components_(std::move(components)),
         secants_(kernels_, 2),
@@ -133,9 +136,43 @@ class EquilibriumSteps final : public PlasticSteps {
   }
 
   Result<bool> step(Motion& motion, PlasticField& plastic) override {
+    if (auto found = find_equilibrium(motion, plastic); !found) return fail(found.error());
+    return take(motion, plastic);
+  }
+
+  Result<void> meet(int number, const PlasticContact& with, Motion& motion,
+                    PlasticField& plastic) override {
+    PLIANT_EXPECTS(!steps_.are_reflected());
+    const Eigen::Index moving = motion.displacement.rows();
+    if (auto found = find_equilibrium(motion, plastic); !found) return found;
+    if (with.contact.begin(number, motion.displacement, x_.topRows(moving))) {
+      const ContactPlate plate{[this](const Field& forces) -> Result<Field> {
+                                 Field x = Field::Zero(forces.rows(), 3);
+                                 if (auto solved = solve(forces, {}, x); !solved)
+                                   return fail(solved.error());
+                                 return x;
+                               },
+                               with.matrix, terms_, steps_.length};
+      const auto balance = [&](const std::vector<double>& bounds,
+                               std::vector<Vector3d>& forces) -> Result<Field> {
+        auto found = find_balance(motion, plastic, with, plate, bounds, forces);
+        if (!found) return fail(found.error());
+        return Field(x_.topRows(moving));
+      };
+      if (auto settled = settle_contact(with.contact, with.problem, balance); !settled)
+        return fail(settled.error());
+    } else {
+      with.contact.end({});
+    }
+    take(motion, plastic);
+    return {};
+  }
+
+ private:
+  // Goes on to x_, with what flowed on the way there; whether anything did.
+  bool take(Motion& motion, PlasticField& plastic) {
     Field& w = motion.displacement;
     Field& v = motion.velocity;
-    if (auto found = find_equilibrium(motion, plastic); !found) return fail(found.error());
     const bool flowed = places_ && places_->is_flowing();
     if (flowed) {
       const double part = steps_.are_reflected() ? 2 : 1;
@@ -157,7 +194,62 @@ class EquilibriumSteps final : public PlasticSteps {
     return flowed;
   }
 
- private:
+  // The right-hand sides of a step, with the forces of what flows in it.
+  void put_sums(const Motion& motion) {
+    const Eigen::Index moving = motion.displacement.rows();
+    for (const int k : components_) {
+      sums_.col(k) = terms_.known.col(k);
+      sums_.col(k).head(moving) += terms_.shift.cwiseProduct(motion.displacement.col(k)) +
+                                   terms_.inertia.cwiseProduct(motion.velocity.col(k));
+    }
+    if (places_) places_->add_to(sums_, forces_);
+  }
+
+  // From what flows without contact, or with other rows, to what flows with the present ones: for
+  // given flow contact is solved as that of an elastic plate, and what then flows comes closer by
+  // 1/(1 + H) at least, faster by Anderson's method.
+  Result<void> find_balance(const Motion& motion, const PlasticField& from,
+                            const PlasticContact& with, const ContactPlate& plate,
+                            const std::vector<double>& bounds, std::vector<Vector3d>& forces) {
+    constexpr int most_rounds = 2000;
+    const Eigen::Index moving = motion.displacement.rows();
+    AndersonMixing mixing(12);
+    double shortest = std::numeric_limits<double>::infinity();
+    double before = shortest;
+    int since = 0;  // rounds since it was shortest
+    forces_ = guess_;
+    for (int round = 0; round < most_rounds; ++round) {
+      if (context_.is_stopped()) return interrupted();
+      put_sums(motion);
+      if (auto solved = solve(sums_, {}, x_); !solved) return solved;
+      with.contact.end_freely_at(x_.topRows(moving));
+      const auto moved = pushed_by_contact(plate, with.problem, with.contact, bounds, forces);
+      if (!moved) return fail(moved.error());
+      x_ += *moved;
+      if (yields_elsewhere(from)) {
+        mixing.clear();
+        continue;
+      }
+      if (!places_) return {};
+      places_->take_from(x_, way_);
+      places_->go_to(way_, flowed_);
+      guess_ = flowed_;
+      left_ = flowed_;
+      add(kernels_, left_, -1, forces_);
+      if (are_all_zero(left_)) return {};
+      if (auto solved = solve_on_places(left_, way_); !solved) return solved;
+      const double length = longest(way_, moving, peaks_of(x_, moving));
+      since = length < 0.5 * shortest ? 0 : since + 1;
+      shortest = std::min(shortest, length);
+      if (!(length > nearest_) || (since > 40 && length < 1e-9)) return {};
+      // Where the way has become longer the method went astray: what flows leads back.
+      if (length > before) mixing.clear();
+      before = length;
+      forces_ = mixing.next(forces_, flowed_);
+    }
+    return fail(not_in_equilibrium(moving, most_rounds));
+  }
+
   // Finds x_, and the forces by what then grows in flowed_.
   Result<void> find_equilibrium(const Motion& motion, const PlasticField& from) {
     constexpr int most_rounds = 100;
@@ -165,12 +257,7 @@ class EquilibriumSteps final : public PlasticSteps {
     if (places_) places_->begin(from);
     forces_ = guess_;
     for (int round = 0; round < most_rounds; ++round) {
-      for (const int k : components_) {
-        sums_.col(k) = terms_.known.col(k);
-        sums_.col(k).head(moving) += terms_.shift.cwiseProduct(motion.displacement.col(k)) +
-                                     terms_.inertia.cwiseProduct(motion.velocity.col(k));
-      }
-      if (places_) places_->add_to(sums_, forces_);
+      put_sums(motion);
       if (auto solved = solve(sums_, {}, x_); !solved) return solved;
       if ((round > 0 || !places_) && !yields_elsewhere(from)) {
         if (!places_) return {};
@@ -308,6 +395,7 @@ class EquilibriumSteps final : public PlasticSteps {
   const PlateKernels& kernels_;
   StepTerms terms_;  // known: with the forces of the plastic curvatures
   double shortest_way_;
+  double nearest_;  // how near what flows is to what it should be, with contact
   TimeSteps steps_;
   std::vector<int> components_;
   std::optional<FlowingPlaces> places_;  // those that may flow; none: nothing has flowed

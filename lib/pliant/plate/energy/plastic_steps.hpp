@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "pliant/plate/contact/contact_steps.hpp"
 #include "pliant/plate/energy/place_curvatures.hpp"
 #include "pliant/plate/plate_solver.hpp"
 #include "pliant/plate/step_loop.hpp"
@@ -54,6 +55,13 @@ class FlowingPlate {
   virtual PlaceRows rows_of(const std::vector<int>& places) = 0;
 };
 
+/// What a plate that flows meets, and how its forces are found.
+struct PlasticContact {
+  StepContact& contact;
+  Complementarity& problem;
+  SolvedMatrix matrix;  ///< of a step of backward Euler
+};
+
 /// The steps of an interval, each of displacement and plastic curvatures together, to 1e-9 of the
 /// peak. Steps learn from those before them. Internal to plate.
 class PlasticSteps {
@@ -67,6 +75,12 @@ class PlasticSteps {
   /// One step; whether a place flowed in it. Errors: those of the plate; SolverFailed if the step
   /// does not settle; Interrupted.
   virtual Result<bool> step(Motion& motion, PlasticField& plastic) = 0;
+
+  /// Step `number` of its interval, in which displacement, plastic curvatures and the forces of
+  /// contact fit together. Requires: steps of backward Euler, all components at work. Errors: as
+  /// `step`, and those of contact.
+  virtual Result<void> meet(int number, const PlasticContact& with, Motion& motion,
+                            PlasticField& plastic) = 0;
 };
 
 /// The components of a plate that do not stay 0: all but those in which all of these are 0, on what

@@ -236,6 +236,39 @@ Result<PlateState> TrianglePlate::advance(const TriangleProblem& problem, const 
   return state;
 }
 
+namespace {
+
+SolvedMatrix contact_matrix(SparsePlate& plate, Eigen::Index size, const Eigen::VectorXd& shift) {
+  const auto upper = [&plate, shift]() -> Result<SparseMatrix> {
+    SparseMatrix matrix = plate.stiffness();
+    for (Eigen::Index k = 0; k < shift.size(); ++k) matrix.coeffRef(k, k) += shift[k];
+    return matrix;
+  };
+  return {size, [&plate](const Field& f) { return plate.solve_roughly(f); }, upper};
+}
+
+}  // namespace
+
+// The plate for steps in which something touches: Newmark's need one of their own for these.
+Result<SparsePlate*> TrianglePlate::prepare_contact(const Dynamics& dynamics,
+                                                    const TimeSteps& steps) {
+  if (!contact_) contact_ = std::make_unique<TriangleContact>(solver_, context_);
+  const double dt = steps.length, shift = dynamics.shift(dt), drag = dynamics.damping / dt;
+  SparsePlate& whole = steps.are_reflected() ? contact_->whole : plate_;
+  if (steps.are_reflected() && !contact_->is_assembled) {
+    if (auto assembled = whole.assemble(*this); !assembled) return fail(assembled.error());
+    contact_->is_assembled = true;
+  }
+  if (auto ready = whole.prepare(shift, drag); !ready) return fail(ready.error());
+  if (contact_->shift != shift || contact_->drag != drag) {
+    contact_->columns.forget();
+    contact_->problem.forget();
+  }
+  contact_->shift = shift;
+  contact_->drag = drag;
+  return &whole;
+}
+
 // Steps until something touches are those of a plate that meets nothing.
 Result<void> TrianglePlate::advance_with_contact(const TriangleProblem& problem,
                                                  const TimeSteps& steps, const Field& forces,
@@ -254,33 +287,16 @@ Result<void> TrianglePlate::advance_with_contact(const TriangleProblem& problem,
   const auto gone = plate_.advance(problem.dynamics, steps, {{}, forces}, motion, touches_nothing);
   if (!gone) return fail(gone.error());
   if (*gone == steps.count) return {};
-  if (!contact_) contact_ = std::make_unique<TriangleContact>(solver_, context_);
   const Dynamics& dynamics = problem.dynamics;
-  const double dt = steps.length, shift = dynamics.shift(dt), drag = dynamics.damping / dt;
-  SparsePlate& whole = is_reflected ? contact_->whole : plate_;
-  if (is_reflected && !contact_->is_assembled) {
-    if (auto assembled = whole.assemble(*this); !assembled) return assembled;
-    contact_->is_assembled = true;
-  }
-  if (auto ready = whole.prepare(shift, drag); !ready) return ready;
-  if (contact_->shift != shift || contact_->drag != drag) {
-    contact_->columns.forget();
-    contact_->problem.forget();
-  }
-  contact_->shift = shift;
-  contact_->drag = drag;
+  const auto prepared = prepare_contact(dynamics, steps);
+  if (!prepared) return fail(prepared.error());
+  SparsePlate& whole = **prepared;
+  const double dt = steps.length;
   const auto plate_of = [&](SparsePlate& plate, double length) {
     StepTerms terms = plate.terms(forces, dynamics, length);
-    const auto upper = [&plate, shift = terms.shift]() -> Result<SparseMatrix> {
-      SparseMatrix matrix = plate.stiffness();
-      for (Eigen::Index k = 0; k < shift.size(); ++k) matrix.coeffRef(k, k) += shift[k];
-      return matrix;
-    };
-    const Eigen::Index size = forces.rows();
-    return ContactPlate{[&plate](const Field& f) { return plate.solve(f); },
-                        {size, [&plate](const Field& f) { return plate.solve_roughly(f); }, upper},
-                        std::move(terms),
-                        length};
+    SolvedMatrix matrix = contact_matrix(plate, forces.rows(), terms.shift);
+    return ContactPlate{[&plate](const Field& f) { return plate.solve(f); }, std::move(matrix),
+                        std::move(terms), length};
   };
   const ContactPlate own = plate_of(whole, dt), half = plate_of(plate_, steps.solved_length());
   for (int step = *gone; step < steps.count; ++step) {
@@ -326,14 +342,14 @@ Result<void> TrianglePlate::prepare_plasticity() {
 // All unknowns, those within blocks too, on which plastic curvatures press.
 class TrianglePlate::FlowingTriangles final : public FlowingPlate {
  public:
-  explicit FlowingTriangles(TrianglePlate& plate)
-      : plate_(plate), triangles_(plate.plasticity_->triangles) {}
+  FlowingTriangles(TrianglePlate& plate, SparsePlate& solved)
+      : plate_(plate), solved_(solved), triangles_(plate.plasticity_->triangles) {}
 
   Result<void> solve(const std::vector<int>&, const Field& forces, std::span<const UnknownRun>,
                      Field& solution) override {
     Field eliminated = forces;
     const InnerUnknowns& inner = plate_.plasticity_->inner;
-    auto left = plate_.plate_.solve(inner.eliminate(eliminated));
+    auto left = solved_.solve(inner.eliminate(eliminated));
     if (!left) return fail(left.error());
     solution = inner.recovered(*left, eliminated);
     return {};
@@ -353,6 +369,7 @@ class TrianglePlate::FlowingTriangles final : public FlowingPlate {
 
  private:
   TrianglePlate& plate_;
+  SparsePlate& solved_;  // with the matrix of the steps
   const PlasticTriangles& triangles_;
 };
 
@@ -373,21 +390,69 @@ Result<void> TrianglePlate::advance_plastic(const TriangleProblem& problem, cons
   auto of_matrix = reduced(forces);
   if (!of_matrix) return fail(of_matrix.error());
   of_matrix->topRows(points) += problem.load;
+  const Eigen::Index size = of_matrix->rows();
   known.topRows(points) += problem.load;
   inner.eliminate(forces);
 
+  int number = 0;
   const auto stays_elastic = [&](const Field& solution) {
-    return !triangles.yields(inner.recovered(solution, forces), state.plastic);
+    if (triangles.yields(inner.recovered(solution, forces), state.plastic)) return false;
+    if (!problem.contact) return true;
+    const Field& w = motion.displacement;
+    Field next = solution.topRows(w.rows());
+    if (steps.are_reflected()) next = 2 * next - w;
+    return !problem.contact->begin(number++, w, next);
   };
   const auto gone =
       plate_.advance(problem.dynamics, steps, {{}, *std::move(of_matrix)}, motion, stays_elastic);
   if (!gone) return fail(gone.error());
   if (*gone == steps.count) return {};
-  FlowingTriangles flowing(*this);
-  const auto all = make_plastic_steps(
-      flowing, context_, plate_.terms(std::move(known), problem.dynamics, steps.solved_length()),
-      problem.law->hardening, steps, std::move(components), state.plastic);
-  return run_plastic_steps(*all, steps.count - *gone, motion, state.plastic);
+  FlowingTriangles flowing(*this, plate_);
+  const auto make = [&](FlowingPlate& of, SparsePlate& solved, const TimeSteps& own,
+                        std::vector<int> at_work) {
+    return make_plastic_steps(of, context_,
+                              solved.terms(known, problem.dynamics, own.solved_length()),
+                              problem.law->hardening, own, std::move(at_work), state.plastic);
+  };
+  auto all = make(flowing, plate_, steps, std::move(components));
+  if (!problem.contact) return run_plastic_steps(*all, steps.count - *gone, motion, state.plastic);
+  StepContact& contact = *problem.contact;
+  std::unique_ptr<FlowingTriangles> flowing_whole;
+  std::unique_ptr<PlasticSteps> whole;
+  SparsePlate* solved = nullptr;
+  bool has_touched = false;
+  for (int step = *gone; step < steps.count; ++step) {
+    if (context_.is_stopped()) return interrupted();
+    if (!has_touched || steps.are_reflected()) {
+      const std::vector<int> every = {0, 1, 2};
+      if (!all) all = make(flowing, plate_, steps, every);
+      Motion tried = motion;
+      PlasticField flowed = state.plastic;
+      if (auto stepped = all->step(tried, flowed); !stepped) return fail(stepped.error());
+      if (!contact.begin(step, motion.displacement, tried.displacement)) {
+        contact.end({});
+        motion = std::move(tried);
+        state.plastic = std::move(flowed);
+        whole.reset();
+        continue;
+      }
+      has_touched = true;
+    }
+    all.reset();
+    if (!whole) {
+      const auto prepared = prepare_contact(problem.dynamics, steps);
+      if (!prepared) return fail(prepared.error());
+      solved = *prepared;
+      flowing_whole = std::make_unique<FlowingTriangles>(*this, *solved);
+      whole =
+          make(*flowing_whole, *solved, {.count = steps.count, .length = steps.length}, {0, 1, 2});
+    }
+    const PlasticContact with{
+        contact, contact_->problem,
+        contact_matrix(*solved, size, solved->terms(known, problem.dynamics, steps.length).shift)};
+    if (auto met = whole->meet(step, with, motion, state.plastic); !met) return met;
+  }
+  return {};
 }
 
 }  // namespace pliant

@@ -92,6 +92,7 @@ class TrianglePlate : private PlateAssembly {
   Result<Field> reduced(const Field& forces) const;
   Field held_forces(const EdgeTangents& slopes, const Field& displacement) const;
   Result<void> prepare_plasticity();
+  Result<SparsePlate*> prepare_contact(const Dynamics& dynamics, const TimeSteps& steps);
   Result<void> advance_with_contact(const TriangleProblem& problem, const TimeSteps& steps,
                                     const Field& forces, Motion& motion);
   Result<void> advance_plastic(const TriangleProblem& problem, const TimeSteps& steps,

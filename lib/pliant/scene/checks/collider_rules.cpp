@@ -31,8 +31,6 @@ Obstacle obstacle_of(const Surface& surface) {
     return {"integrator", "exact", "what touches has no solution in closed form"};
   if (surface.solver.reference == Reference::None)
     return {"reference", "none", "only what has a shape at rest can meet a collider"};
-  if (surface.material.yield)
-    return {"yield", "", "a surface that yields does not meet colliders in this version"};
   return {};
 }
 
@@ -47,11 +45,10 @@ void check_colliders(const Scene& scene, const ChannelFilter& is_sound, Findings
       const Obstacle found = obstacle_of(surface);
       const std::string attribute(found.attribute);
       if (attribute.empty() || (is_sound && !is_sound(surface.name, attribute))) continue;
-      const std::string given = found.given.empty() ? "given" : in_quotes(found.given);
       findings.add_problem(
           scene.origin.at(surface.name, attribute),
           fmt::format("{}.{} is {}, but the collider {} acts on it: {}", surface.name, attribute,
-                      given, in_quotes(collider.name), found.reason));
+                      in_quotes(found.given), in_quotes(collider.name), found.reason));
     }
   }
 }
