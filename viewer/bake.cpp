@@ -97,8 +97,7 @@ class SurfaceView {
       }
     }
     std::ranges::sort(vertices);
-    const auto repeated = std::ranges::unique(vertices);
-    vertices.erase(repeated.begin(), repeated.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     std::uint32_t before = 0;
     for (const std::uint32_t vertex : vertices) {
       touching_steps_.push_back(vertex - before);

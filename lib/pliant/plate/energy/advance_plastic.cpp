@@ -225,7 +225,7 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
   for (int number = first; number < steps.count; ++number) {
     const Motion before = help ? motion : Motion();
     const PlasticField plastic_before = help ? plastic : PlasticField();
-    const auto flowed = all->step(motion, plastic);
+    auto flowed = all->step(motion, plastic);
     if (!flowed) return flowed;
     if (number == first && is_expected && !*flowed) return false;
     if (!help) continue;
