@@ -71,6 +71,31 @@ TEST_CASE("nothing touches once a collider is disabled, or a surface is not solv
   }
 }
 
+TEST_CASE("nodes that begin inside are counted once, however a step is tried",
+          "[simulation][contact]") {
+  const Collider inside = ball_on_keys(2, {{1, {0.1, 1.2, 0.05}}});
+  for (const Integrator integrator : {Integrator::BackwardEuler, Integrator::Newmark}) {
+    for (const bool yields : {false, true}) {
+      for (Surface surface : {wide_mat(), wide_skin()}) {
+        surface.solver.integrator = integrator;
+        if (yields) surface.material.yield = 0.3;
+        Simulation simulation = Simulation::make(met_scene(surface, {inside})).value();
+        const Field& rest = simulation.rest_shapes()[0].rest;
+        NodesInside expected;
+        for (Eigen::Index k = 0; k < rest.rows(); ++k) {
+          const double depth = 2 - (rest.row(k) - Eigen::RowVector3d(0.1, 1.2, 0.05)).norm();
+          if (depth > 0) expected.add(depth);
+        }
+        REQUIRE(expected.count > 4);
+        const FrameReport report = simulation.report(2).value();
+        const NodesInside& found = report.surfaces[0].contacts[0].thrown;
+        CHECK(found.count == expected.count);
+        CHECK(found.depth == Approx(expected.depth));
+      }
+    }
+  }
+}
+
 TEST_CASE("what is inside, held or squeezed is told with its frames", "[simulation][contact]") {
   const auto warnings_of = [](const Scene& scene) {
     Simulation simulation = Simulation::make(scene).value();

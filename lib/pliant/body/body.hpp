@@ -49,7 +49,7 @@ struct BodyInputs {
   std::vector<int> selectors = {};
 
   /// The solids that it meets: the enabled ones that target the body, with a deformation radius of
-  /// 0 where they select nothing. Not with Reference::None, exact steps or a law.
+  /// 0 where they select nothing. Not with Reference::None or exact steps.
   std::vector<SampledCollider> colliders = {};
   std::optional<BodyMotion> motion = {};  ///< if there are colliders
 

@@ -27,6 +27,10 @@ struct NodesInside {
     ++count;
     depth = std::max(depth, depth_of_node);
   }
+  void add(const NodesInside& others) {
+    count += others.count;
+    depth = std::max(depth, others.depth);
+  }
 
   friend bool operator==(const NodesInside&, const NodesInside&) = default;
 };

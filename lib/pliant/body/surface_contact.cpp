@@ -167,6 +167,7 @@ void SurfaceContact::begin_patch(std::span<const RowRun> moved) {
   next_rest_.resize(0, 3);
   if (const Field* const next = places_.next_rest()) gather(*next, next_rest_);
   pushes_.clear();
+  thrown_.assign(sampled_.size(), {});
 }
 
 // The unknowns in the world as a step begins.
@@ -193,6 +194,8 @@ bool SurfaceContact::begin(int step, const Field& from, const Field& to) {
   found_.clear();
   rows_.clear();
   pushes_.assign(sampled_.size(), {});
+  // A step may be tried more than once.
+  if (step == 0) thrown_.assign(sampled_.size(), {});
   return find(true);
 }
 
@@ -249,7 +252,7 @@ bool SurfaceContact::find(bool is_first) {
     if (is_first && step_ == 0 && is_new_[static_cast<std::size_t>(collider)]) {
       const double distance = nearness(from.kept, from.to_frame(before)).distance;
       if (distance < -lying * places_.diagonal())
-        facts_[static_cast<std::size_t>(collider)].thrown.add(-distance);
+        thrown_[static_cast<std::size_t>(collider)].add(-distance);
     }
     std::optional<NodeRow> row;
     if (is_first && sampled.sticks)
@@ -319,6 +322,7 @@ void SurfaceContact::end_patch() {
   for (std::size_t c = 0; c < pushes_.size(); ++c) {
     facts_[c].nodes.insert(facts_[c].nodes.end(), pushes_[c].nodes.begin(), pushes_[c].nodes.end());
     facts_[c].force += pushes_[c].force;
+    facts_[c].thrown.add(thrown_[c]);
   }
   pushes_.clear();
 }

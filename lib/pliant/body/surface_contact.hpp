@@ -121,7 +121,8 @@ class SurfaceContact final : public StepContact {
     std::vector<int> nodes = {};
     Vector3d force = {0, 0, 0};
   };
-  std::vector<Pushes> pushes_;  // of each collider, in the patch's last step so far
+  std::vector<NodesInside> thrown_;  // of each collider, as the patch's first step began
+  std::vector<Pushes> pushes_;       // of each collider, in the patch's last step so far
 };
 
 }  // namespace pliant
