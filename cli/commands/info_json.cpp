@@ -88,9 +88,7 @@ Json region_json(const RegionPreview& region) {
 
 Json contact_json(const ContactSummary& contact, const SceneFacts& facts) {
   const Collider& collider = facts.scene.colliders[contact.collider];
-  const auto at = [](int frame, double value) {
-    return frame == 0 && value == 0 ? Json(nullptr) : Json(frame);
-  };
+  const auto at = [](int frame, double value) { return value == 0 ? Json(nullptr) : Json(frame); };
   return {{"name", collider.name},
           {"shape", shape_of(collider)},
           {"surface", facts.scene.surfaces[contact.surface].name},

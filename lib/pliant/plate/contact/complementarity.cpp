@@ -235,27 +235,25 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
     if (auto turned = turn(rows, plate); !turned) return fail(turned.error());
     std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
     if (wrong.empty()) {
+      bool is_settled = true;
+      if (!bounds.empty()) {
+        fewest = std::numeric_limits<std::size_t>::max();
+        waited = 0;
+        const bool will_be_smooth = ++updates / turns_of_newton % 2 == 1;
+        if (is_smooth_ || will_be_smooth) {
+          smooth(rows, will_be_smooth);
+          is_settled = false;
+        } else {
+          is_settled = !update_friction(rows, tolerance);
+        }
+      }
+      if (!is_settled) continue;
+      if (!is_rough()) {
+        keep(rows);
+        return forces_;
+      }
       // All of it once more, as exactly as it can be; dense factors always are.
-      if (bounds.empty()) {
-        if (!is_rough()) {
-          keep(rows);
-          return forces_;
-        }
-        is_rough_ = false;
-        continue;
-      }
-      fewest = std::numeric_limits<std::size_t>::max();
-      waited = 0;
-      const bool will_be_smooth = ++updates / turns_of_newton % 2 == 1;
-      if (is_smooth_ || will_be_smooth) {
-        smooth(rows, will_be_smooth);
-      } else if (!update_friction(rows, tolerance)) {
-        if (!is_rough()) {
-          keep(rows);
-          return forces_;
-        }
-        is_rough_ = false;
-      }
+      is_rough_ = false;
       continue;
     }
     waited = wrong.size() < fewest ? 0 : waited + 1;
