@@ -1,6 +1,5 @@
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -132,77 +131,36 @@ PlateProblem held(const PlateProblem& problem, const PlasticPlate& plate,
   return elastic;
 }
 
-// Makes the steps of a plate.
-class FlowingSteps {
- public:
-  FlowingSteps(const PlasticPlate& plate, const PlateProblem& problem, const Field& held)
-      : plate_(plate), problem_(problem), held_(held) {}
+// The steps of a grid. What is given outlives them.
+Result<OwnedSteps> make_steps(PlateSolver& solver, const PlasticPlate& plate,
+                              const PlateProblem& problem, const Field& held,
+                              const TimeSteps& steps, const PlasticField& plastic) {
+  const StageTimer set_up(solver.context().profile, Stage::SetUp);
+  const double dt = steps.solved_length();
+  if (auto ready = solver.prepare(problem.system(dt)); !ready) return fail(ready.error());
+  StepTerms terms = solver.terms(problem, dt, held);
+  OwnedSteps made{std::make_unique<FlowingGrid>(solver, plate, problem.outline, held), {}};
+  if (problem.contact) made.matrix = contact_matrix(solver, problem, dt, terms.shift);
+  made.steps = make_plastic_steps(*made.plate, solver.context(), std::move(terms),
+                                  problem.law->hardening, steps, plate.components(), plastic);
+  return made;
+}
 
-  Result<void> make(PlateSolver& solver, const TimeSteps& steps, std::vector<int> components,
-                    const PlasticField& plastic) {
-    const StageTimer set_up(solver.context().profile, Stage::SetUp);
-    const double dt = steps.solved_length();
-    if (auto ready = solver.prepare(problem_.system(dt)); !ready) return fail(ready.error());
-    StepTerms terms = solver.terms(problem_, dt, held_);
-    shift_ = terms.shift;
-    steps_.reset();
-    flowing_.emplace(solver, plate_, problem_.outline, held_);
-    steps_ = make_plastic_steps(*flowing_, solver.context(), std::move(terms),
-                                problem_.law->hardening, steps, std::move(components), plastic);
-    return {};
-  }
-
-  void forget() { steps_.reset(); }
-  bool are_made() const { return steps_ != nullptr; }
-  PlasticSteps& operator*() { return *steps_; }
-  PlasticSteps* operator->() { return steps_.get(); }
-  const Eigen::VectorXd& shift() const { return shift_; }
-
- private:
-  const PlasticPlate& plate_;
-  const PlateProblem& problem_;
-  const Field& held_;
-  std::optional<FlowingGrid> flowing_;
-  std::unique_ptr<PlasticSteps> steps_;
-  Eigen::VectorXd shift_;
-};
-
-// The steps from `first` on, in which something touches. A step of Newmark's that touches is one of
-// backward Euler; what one of the two makes flow the other one has to know.
+// The steps from `first` on, in which something touches.
 Result<void> meet_on(PlateSolver& solver, const ContactHelp& help, const PlateProblem& problem,
                      const TimeSteps& steps, int first, const Field& held, Motion& motion,
                      PlasticField& plastic) {
-  const std::vector<int> all = {0, 1, 2};
-  const PlasticPlate plate(problem, all, kernels_of_width(solver.context().most_lanes));
-  const TimeSteps whole_steps{.count = steps.count, .length = steps.length};
-  FlowingSteps whole(plate, problem, held), half(plate, problem, held);
+  const PlasticPlate plate(problem, {0, 1, 2}, kernels_of_width(solver.context().most_lanes));
   help.memory.keep_for(problem.system(steps.length));
-  for (int number = first; number < steps.count; ++number) {
-    if (solver.context().is_stopped()) return interrupted();
-    if (steps.are_reflected() && number > first) {
-      if (!half.are_made()) {
-        if (auto made = half.make(solver, steps, all, plastic); !made) return made;
-      }
-      Motion tried = motion;
-      PlasticField flowed = plastic;
-      if (auto stepped = half->step(tried, flowed); !stepped) return fail(stepped.error());
-      if (!problem.contact->begin(number, motion.displacement, tried.displacement)) {
-        problem.contact->end({});
-        motion = std::move(tried);
-        plastic = std::move(flowed);
-        whole.forget();
-        continue;
-      }
-    }
-    if (!whole.are_made()) {
-      if (auto made = whole.make(help.whole, whole_steps, all, plastic); !made) return made;
-    }
-    const PlasticContact with{*problem.contact, help.memory.problem,
-                              contact_matrix(help.whole, problem, steps.length, whole.shift())};
-    if (auto met = whole->meet(number, with, motion, plastic); !met) return met;
-    half.forget();
-  }
-  return {};
+  const TimeSteps whole_steps{.count = steps.count, .length = steps.length};
+  const MetPlate met{*problem.contact, help.memory.problem,
+                     [&](const PlasticField& from) {
+                       return make_steps(solver, plate, problem, held, steps, from);
+                     },
+                     [&](const PlasticField& from) {
+                       return make_steps(help.whole, plate, problem, held, whole_steps, from);
+                     }};
+  return run_met_steps(met, solver.context(), steps, first, motion, plastic);
 }
 
 // Steps that flow from `first` on. If that one does not, nothing happens, and none is done.
@@ -211,33 +169,25 @@ Result<bool> flow_on(PlateSolver& solver, const PlasticPlate& plate, const Plate
                      const ContactHelp* help) {
   const double dt = steps.solved_length();
   const Outline& outline = problem.outline;
-  const Field& held = state.displacement;
+  PlasticField& plastic = state.plastic;  // grows with the first step that flows
+  auto all = make_steps(solver, plate, problem, state.displacement, steps, plastic);
+  if (!all) return fail(all.error());
   const StageTimer solving(solver.context().profile, Stage::Solve);
   Motion motion{interior_of(outline, state.displacement), interior_of(outline, state.velocity)};
-  PlasticField& plastic = state.plastic;  // grows with the first step that flows
-  FlowingSteps all(plate, problem, held);
-  if (auto made = all.make(solver, steps, plate.components(), plastic); !made)
-    return fail(made.error());
   if (is_expected) {
-    all->expect(motion.displacement + dt * motion.velocity,
-                motion.displacement + steps.count * dt * motion.velocity, plastic);
+    all->steps->expect(motion.displacement + dt * motion.velocity,
+                       motion.displacement + steps.count * dt * motion.velocity, plastic);
   }
   for (int number = first; number < steps.count; ++number) {
-    const Motion before = help ? motion : Motion();
-    const PlasticField plastic_before = help ? plastic : PlasticField();
-    auto flowed = all->step(motion, plastic);
-    if (!flowed) return flowed;
-    if (number == first && is_expected && !*flowed) return false;
-    if (!help) continue;
-    if (problem.contact->begin(number, before.displacement, motion.displacement)) {
-      motion = before;
-      plastic = plastic_before;
-      all.forget();
-      auto met = meet_on(solver, *help, problem, steps, number, held, motion, plastic);
+    const auto tried = try_step(*all->steps, number, problem.contact, motion, plastic);
+    if (!tried) return fail(tried.error());
+    if (!tried->stands) {
+      auto met =
+          meet_on(solver, *help, problem, steps, number, state.displacement, motion, plastic);
       if (!met) return fail(met.error());
       break;
     }
-    problem.contact->end({});
+    if (number == first && is_expected && !tried->flowed) return false;
   }
   state.displacement = with_interior(outline, std::move(state.displacement), motion.displacement);
   state.velocity = with_interior(outline, std::move(state.velocity), motion.velocity);

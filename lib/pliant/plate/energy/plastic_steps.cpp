@@ -433,10 +433,51 @@ std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunC
                                             std::move(components), plastic);
 }
 
-Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,
-                               PlasticField& plastic) {
-  for (int step = 0; step < count; ++step) {
-    if (auto stepped = steps.step(motion, plastic); !stepped) return fail(stepped.error());
+Result<TriedStep> try_step(PlasticSteps& steps, int number, StepContact* contact, Motion& motion,
+                           PlasticField& plastic) {
+  if (!contact) {
+    const auto flowed = steps.step(motion, plastic);
+    if (!flowed) return fail(flowed.error());
+    return TriedStep{true, *flowed};
+  }
+  Motion next = motion;
+  PlasticField grown = plastic;
+  const auto flowed = steps.step(next, grown);
+  if (!flowed) return fail(flowed.error());
+  if (contact->begin(number, motion.displacement, next.displacement)) return TriedStep{false};
+  contact->end({});
+  motion = std::move(next);
+  plastic = std::move(grown);
+  return TriedStep{true, *flowed};
+}
+
+Result<void> run_met_steps(const MetPlate& plate, const RunContext& context, const TimeSteps& steps,
+                           int first, Motion& motion, PlasticField& plastic) {
+  // What one of the two makes flow the other one has to know.
+  OwnedSteps tried, whole;
+  for (int number = first; number < steps.count; ++number) {
+    if (context.is_stopped()) return interrupted();
+    if (steps.are_reflected() && number > first) {
+      if (!tried.steps) {
+        auto made = plate.make_tried(plastic);
+        if (!made) return fail(made.error());
+        tried = *std::move(made);
+      }
+      const auto done = try_step(*tried.steps, number, &plate.contact, motion, plastic);
+      if (!done) return fail(done.error());
+      if (done->stands) {
+        whole.steps.reset();
+        continue;
+      }
+    }
+    if (!whole.steps) {
+      auto made = plate.make_whole(plastic);
+      if (!made) return fail(made.error());
+      whole = *std::move(made);
+    }
+    const PlasticContact with{plate.contact, plate.problem, whole.matrix};
+    if (auto met = whole.steps->meet(number, with, motion, plastic); !met) return met;
+    tried.steps.reset();
   }
   return {};
 }

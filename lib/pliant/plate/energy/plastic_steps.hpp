@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -59,7 +60,7 @@ class FlowingPlate {
 struct PlasticContact {
   StepContact& contact;
   Complementarity& problem;
-  SolvedMatrix matrix;  ///< of a step of backward Euler
+  const SolvedMatrix& matrix;  ///< of a step of backward Euler
 };
 
 /// The steps of an interval, each of displacement and plastic curvatures together, to 1e-9 of the
@@ -98,8 +99,36 @@ std::unique_ptr<PlasticSteps> make_plastic_steps(FlowingPlate& plate, const RunC
                                                  std::vector<int> components,
                                                  const PlasticField& plastic);
 
-/// Runs so many steps. Errors: those of a step.
-Result<void> run_plastic_steps(PlasticSteps& steps, int count, Motion& motion,
-                               PlasticField& plastic);
+/// Steps with the plate that they refer to.
+struct OwnedSteps {
+  std::unique_ptr<FlowingPlate> plate;
+  std::unique_ptr<PlasticSteps> steps;
+  SolvedMatrix matrix = {};  ///< of a step; set if the plate meets solids
+};
+
+/// What became of a step.
+struct TriedStep {
+  bool stands = true;  ///< false: something touches in it, and nothing has changed
+  bool flowed = false;
+};
+
+/// Step `number` of its interval; `contact` null: there is nothing to touch. Errors: those of a
+/// step.
+Result<TriedStep> try_step(PlasticSteps& steps, int number, StepContact* contact, Motion& motion,
+                           PlasticField& plastic);
+
+/// How the steps of a plate that meets solids are made, with all components at work, and the
+/// plastic curvatures before the first.
+struct MetPlate {
+  StepContact& contact;
+  Complementarity& problem;
+  std::function<Result<OwnedSteps>(const PlasticField&)> make_tried;  ///< of Newmark's
+  std::function<Result<OwnedSteps>(const PlasticField&)> make_whole;  ///< of backward Euler
+};
+
+/// Runs the steps from `first` on, in which something touches. One of Newmark's in which something
+/// touches is one of backward Euler. Errors: those of a step.
+Result<void> run_met_steps(const MetPlate& plate, const RunContext& context, const TimeSteps& steps,
+                           int first, Motion& motion, PlasticField& plastic);
 
 }  // namespace pliant

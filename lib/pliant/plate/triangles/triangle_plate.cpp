@@ -407,50 +407,32 @@ Result<void> TrianglePlate::advance_plastic(const TriangleProblem& problem, cons
       plate_.advance(problem.dynamics, steps, {{}, *std::move(of_matrix)}, motion, stays_elastic);
   if (!gone) return fail(gone.error());
   if (*gone == steps.count) return {};
-  FlowingTriangles flowing(*this, plate_);
-  const auto make = [&](FlowingPlate& of, SparsePlate& solved, const TimeSteps& own,
-                        std::vector<int> at_work) {
-    return make_plastic_steps(of, context_,
-                              solved.terms(known, problem.dynamics, own.solved_length()),
-                              problem.law->hardening, own, std::move(at_work), state.plastic);
+  const auto make = [&](SparsePlate& solved, const TimeSteps& own, std::vector<int> at_work,
+                        const PlasticField& from) {
+    StepTerms terms = solved.terms(known, problem.dynamics, own.solved_length());
+    OwnedSteps made{std::make_unique<FlowingTriangles>(*this, solved), {}};
+    if (problem.contact) made.matrix = contact_matrix(solved, size, terms.shift);
+    made.steps = make_plastic_steps(*made.plate, context_, std::move(terms), problem.law->hardening,
+                                    own, std::move(at_work), from);
+    return made;
   };
-  auto all = make(flowing, plate_, steps, std::move(components));
-  if (!problem.contact) return run_plastic_steps(*all, steps.count - *gone, motion, state.plastic);
-  StepContact& contact = *problem.contact;
-  std::unique_ptr<FlowingTriangles> flowing_whole;
-  std::unique_ptr<PlasticSteps> whole;
-  SparsePlate* solved = nullptr;
-  bool has_touched = false;
+  OwnedSteps all = make(plate_, steps, std::move(components), state.plastic);
   for (int step = *gone; step < steps.count; ++step) {
-    if (context_.is_stopped()) return interrupted();
-    if (!has_touched || steps.are_reflected()) {
-      const std::vector<int> every = {0, 1, 2};
-      if (!all) all = make(flowing, plate_, steps, every);
-      Motion tried = motion;
-      PlasticField flowed = state.plastic;
-      if (auto stepped = all->step(tried, flowed); !stepped) return fail(stepped.error());
-      if (!contact.begin(step, motion.displacement, tried.displacement)) {
-        contact.end({});
-        motion = std::move(tried);
-        state.plastic = std::move(flowed);
-        whole.reset();
-        continue;
-      }
-      has_touched = true;
-    }
-    all.reset();
-    if (!whole) {
-      const auto prepared = prepare_contact(problem.dynamics, steps);
-      if (!prepared) return fail(prepared.error());
-      solved = *prepared;
-      flowing_whole = std::make_unique<FlowingTriangles>(*this, *solved);
-      whole =
-          make(*flowing_whole, *solved, {.count = steps.count, .length = steps.length}, {0, 1, 2});
-    }
-    const PlasticContact with{
-        contact, contact_->problem,
-        contact_matrix(*solved, size, solved->terms(known, problem.dynamics, steps.length).shift)};
-    if (auto met = whole->meet(step, with, motion, state.plastic); !met) return met;
+    const auto tried = try_step(*all.steps, step, problem.contact, motion, state.plastic);
+    if (!tried) return fail(tried.error());
+    if (tried->stands) continue;
+    const auto whole = prepare_contact(problem.dynamics, steps);
+    if (!whole) return fail(whole.error());
+    const std::vector<int> every = {0, 1, 2};
+    const MetPlate met{*problem.contact, contact_->problem,
+                       [&](const PlasticField& from) -> Result<OwnedSteps> {
+                         return make(plate_, steps, every, from);
+                       },
+                       [&](const PlasticField& from) -> Result<OwnedSteps> {
+                         return make(**whole, {.count = steps.count, .length = steps.length}, every,
+                                     from);
+                       }};
+    return run_met_steps(met, context_, steps, step, motion, state.plastic);
   }
   return {};
 }
