@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "contact/scanned_way.hpp"
 #include "contact/solid_meshes.hpp"
 #include "pliant/contact/node_rows.hpp"
 #include "pliant/contact/way.hpp"
@@ -48,29 +49,22 @@ double gap_to_mesh(const MeshChange& change, const Vector3d& x0, const Vector3d&
 
 TEST_CASE("the first contact with a mesh is the first moment at which the distance is 0",
           "[contact][mesh]") {
-  constexpr int moments = 1000;
   for (const MeshChange& change : mesh_changes()) {
     const bool moves = !(change.from.solid == change.to.solid);
     int touched = 0;
     for (int k = 0; k < 60; ++k) {
       const Vector3d x0 = 2 * Vector3d::Random(), x1 = 2 * Vector3d::Random();
       CAPTURE(k, x0.transpose(), x1.transpose(), change.to.offset, moves);
-      int first = -1;
-      double least = 1;
-      for (int m = 0; m <= moments; ++m) {
-        const double now = gap_to_mesh(change, x0, x1, double(m) / moments);
-        if (first < 0 && now <= 0) first = m;
-        least = std::min(least, now);
-      }
+      const ScannedWay way = scan([&](double t) { return gap_to_mesh(change, x0, x1, t); });
       const auto contact = first_contact(change.from, change.to, x0, x1, 1e-9);
-      if (least < -1e-3) REQUIRE(contact);
-      if (least > 1e-2) REQUIRE_FALSE(contact);
-      if (!contact || first < 0) continue;
+      if (way.least < -1e-3) REQUIRE(contact);
+      if (way.least > 1e-2) REQUIRE_FALSE(contact);
+      if (!contact || way.first < 0) continue;
       ++touched;
       if (moves) continue;  // the mesh carries the place
       const double t = (contact->place - x0).norm() / (x1 - x0).norm();
-      CHECK(t <= double(first) / moments + 1e-9);
-      if (first > 0) CHECK_THAT(gap_to_mesh(change, x0, x1, t), WithinAbs(0, 1e-12));
+      CHECK(t <= way.time() + 1e-9);
+      if (way.first > 0) CHECK_THAT(gap_to_mesh(change, x0, x1, t), WithinAbs(0, 1e-12));
     }
     CHECK(touched > 5);
   }

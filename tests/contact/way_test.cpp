@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "contact/scanned_way.hpp"
 #include "support/catch.hpp"
 
 using namespace pliant;
@@ -32,28 +33,20 @@ double distance(const Change& change, const Vector3d& x0, const Vector3d& x1, do
 }  // namespace
 
 TEST_CASE("the first contact is the first moment at which the distance is 0", "[contact][way]") {
-  constexpr int moments = 2000;
   for (const Change& change : changes) {
     int touched = 0;
     for (int k = 0; k < 300; ++k) {
       const Vector3d x0 = 2 * Vector3d::Random(), x1 = 2 * Vector3d::Random();
       CAPTURE(k, x0.transpose(), x1.transpose());
-      // The slow way: look at many moments.
-      int first = -1;
-      double least = 1;
-      for (int m = 0; m <= moments; ++m) {
-        const double now = distance(change, x0, x1, double(m) / moments);
-        if (first < 0 && now <= 0) first = m;
-        least = std::min(least, now);
-      }
+      const ScannedWay way = scan([&](double t) { return distance(change, x0, x1, t); });
       const auto contact = first_contact(change.from, change.to, x0, x1, 1e-9);
-      if (least < -1e-3) REQUIRE(contact);
-      if (least > 1e-3) REQUIRE_FALSE(contact);
-      if (!contact || first < 0) continue;
+      if (way.least < -1e-3) REQUIRE(contact);
+      if (way.least > 1e-3) REQUIRE_FALSE(contact);
+      if (!contact || way.first < 0) continue;
       ++touched;
       const double t = (contact->place - x0).norm() / (x1 - x0).norm();
-      CHECK_THAT(t, WithinAbs(double(first) / moments, 1.0 / moments));
-      if (first > 0) CHECK_THAT(distance(change, x0, x1, t), WithinAbs(0, 1e-12));
+      CHECK_THAT(t, WithinAbs(way.time(), 1.0 / ScannedWay::moments));
+      if (way.first > 0) CHECK_THAT(distance(change, x0, x1, t), WithinAbs(0, 1e-12));
     }
     CHECK(touched > 20);
   }
