@@ -99,26 +99,14 @@ class GltfWriter final : public AnimationWriter {
       things_.push_back(*std::move(made));
       return things_.back().begin(surface.rest, plan.first_frame, buffer_);
     };
-    for (const AnimatedSurface& surface : plan.surfaces) {
-      auto added = add(surface, plan.is_placed ? WrittenAs::PlacedSurface : WrittenAs::Surface);
-      if (!added) return added;
-    }
-    surface_count_ = things_.size();
-    for (const AnimatedSurface& collider : plan.colliders) {
-      if (auto added = add(collider, WrittenAs::Collider); !added) return added;
-    }
-    return {};
+    return add_things(plan, add);
   }
 
   Result<void> write(int frame, std::span<const SurfacePose> surfaces,
                      std::span<const SurfacePose> colliders) override {
-    PLIANT_EXPECTS(surfaces.size() == surface_count_ &&
-                   surfaces.size() + colliders.size() == things_.size());
-    for (std::size_t k = 0; k < things_.size(); ++k) {
-      const SurfacePose& pose = k < surface_count_ ? surfaces[k] : colliders[k - surface_count_];
-      if (auto added = things_[k].add(pose, frame, buffer_); !added) return added;
-    }
-    return {};
+    return add_poses(things_, surfaces, colliders, [&](auto& thing, const SurfacePose& pose) {
+      return thing.add(pose, frame, buffer_);
+    });
   }
 
   Result<void> finish() override {
@@ -230,7 +218,6 @@ class GltfWriter final : public AnimationWriter {
   StopRequest should_stop_;
   GltfBuffer buffer_;
   std::vector<GltfSurface> things_;  // surfaces, then colliders
-  std::size_t surface_count_ = 0;
   std::vector<float> times_;
 };
 
