@@ -12,6 +12,8 @@ namespace {
 // Of the diagonal: how far inside a node may be and not touch, and how near it lies on a solid.
 constexpr double slack = 1e-9;
 constexpr double lying = 1e-6;
+// Those that a solid pushed are so close to it, if it does not slide below them.
+constexpr double resting = 1e-10;
 
 double diagonal_of(const Transform& transform, const Field& nodes) {
   const Field world = to_world(transform, nodes);
@@ -289,9 +291,11 @@ void SurfaceContact::list_rows() {
     own.normal = row.normal;
     own.lift = row.lack(free);
     own.lies = std::abs(near.distance) <= lying * places_.diagonal();
+    own.rests = std::abs(near.distance) <= resting * places_.diagonal();
     own.sticks = row.sticks;
     own.friction = sampled_[collider].friction;
     own.slip = free - row.place;
+    own.place = row.place;
     own.collider = row.collider;
   }
 }

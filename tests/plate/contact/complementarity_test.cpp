@@ -32,12 +32,13 @@ std::vector<ContactRow> random_rows(int unknowns) {
   for (int k = 0; k < unknowns; ++k) {
     // Two rows at some unknowns, across each other.
     const int count = Vector3d::Random().x() > 0.5 ? 2 : 1;
-    const Vector3d n = Vector3d::Random().normalized();
+    const Vector3d n = Vector3d::Random().normalized(), place = Vector3d::Random();
     for (int c = 0; c < count; ++c) {
       ContactRow& row = rows.emplace_back();
       row.unknown = k;
       row.normal = c == 0 ? n : n.unitOrthogonal();
       row.lift = Vector3d::Random().x();
+      row.place = place;
     }
   }
   return rows;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -21,8 +23,51 @@ std::pair<Vector3d, Vector3d> across(const Vector3d& n) {
                         n[0] * one[1] - n[1] * one[0])};
 }
 
+// A place among others, in boxes of boxes: three bits tell in which eighth of its box it is, those
+// of the largest box first.
+constexpr int most_depth = 20;
+
+std::uint64_t nested_boxes_of(const Vector3d& place, const Vector3d& corner, double size) {
+  std::uint64_t boxes = 0;
+  constexpr double sides = 1U << most_depth;
+  std::uint32_t box[3];
+  for (int k = 0; k < 3; ++k) {
+    const double side = (place[k] - corner[k]) / size * sides;
+    box[k] = static_cast<std::uint32_t>(std::clamp(side, 0.0, sides - 1));
+  }
+  for (int bit = most_depth; bit-- > 0;)
+    for (const std::uint32_t side : box) boxes = boxes << 1U | (side >> bit & 1U);
+  return boxes;
+}
+
+// The depth at which each row is the first one of its box, of nested ones around all.
+std::vector<int> depths_of(const std::vector<ContactRow>& rows) {
+  Vector3d corner = rows[0].place, end = corner;
+  for (const ContactRow& row : rows) {
+    corner = corner.cwiseMin(row.place);
+    end = end.cwiseMax(row.place);
+  }
+  const double size = std::max((end - corner).maxCoeff(), std::numeric_limits<double>::min());
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    order.emplace_back(nested_boxes_of(rows[k].place, corner, size), k);
+  std::ranges::sort(order);
+  std::vector<int> depths(rows.size(), most_depth + 1);
+  for (int depth = most_depth; depth >= 0; --depth) {
+    const int bits = 3 * (most_depth - depth);
+    for (std::size_t k = 0; k < order.size();) {
+      std::size_t first = order[k].second;
+      const std::uint64_t box = order[k].first >> bits;
+      for (; k < order.size() && order[k].first >> bits == box; ++k)
+        first = std::min(first, order[k].second);
+      depths[first] = depth;
+    }
+  }
+  return depths;
+}
+
 // What solves of many forces leave, as a part, until the sets are right, and then.
-constexpr double rough = 1e-8, exact = 1e-13;
+constexpr double rough = 1e-8, exact = 1e-12;
 
 Vector3d part_across(const Vector3d& n, const Vector3d& way) { return way - dot_of(n, way) * n; }
 
@@ -36,11 +81,16 @@ Vector3d turned_across(const Vector3d& n, const Vector3d& along) {
 void Complementarity::begin_step() { before_.clear(); }
 
 // Those that pushed in the solve before push at first. In the first solve of a step these are those
-// that lay there and are needed; if there are none, all that are needed.
-void Complementarity::begin(const std::vector<ContactRow>& rows,
+// that rested there and are needed; if most only lay there, as on what moved, those; if there are
+// none, all that are needed. Whether nothing is known of which push.
+bool Complementarity::begin(const std::vector<ContactRow>& rows,
                             const std::vector<double>& bounds) {
-  const bool some_lie = std::ranges::any_of(
-      rows, [](const ContactRow& row) { return row.lies && !row.sticks && row.lift > 0; });
+  const auto count = [&](bool ContactRow::*kind) {
+    return std::ranges::count_if(
+        rows, [&](const ContactRow& row) { return row.*kind && !row.sticks && row.lift > 0; });
+  };
+  const auto lying = count(&ContactRow::lies), resting = count(&ContactRow::rests);
+  const bool some_lie = lying > 0, some_rest = resting > 0 && 2 * resting >= lying;
   pushes_.assign(rows.size(), false);
   friction_.assign(rows.size(), {});
   is_smooth_ = false;
@@ -48,13 +98,15 @@ void Complementarity::begin(const std::vector<ContactRow>& rows,
   forces_.assign(rows.size(), Vector3d::Zero());
   for (std::size_t k = 0; k < rows.size(); ++k) {
     const auto before = before_.find({rows[k].unknown, rows[k].collider});
-    const bool is_needed = rows[k].lift > 0 && (rows[k].lies || !some_lie);
+    const bool is_needed =
+        rows[k].lift > 0 && (some_rest ? rows[k].rests : rows[k].lies || !some_lie);
     pushes_[k] = rows[k].sticks || (before_.empty() ? is_needed : before != before_.end());
     if (bounds.empty() || rows[k].sticks) continue;
     if (before != before_.end()) friction_[k] = before->second;
     friction_[k].bound = bounds[k];
     if (bounds[k] == 0) friction_[k] = {};
   }
+  return before_.empty() && !some_lie;
 }
 
 void Complementarity::list_parts(const std::vector<ContactRow>& rows) {
@@ -108,6 +160,10 @@ Result<std::vector<Vector3d>> Complementarity::ways(const std::vector<ContactRow
 Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, const SolvedMatrix& plate) {
   list_parts(rows);
   if (auto factored = matrix_.factor(along_, plate); !factored) return factored;
+  // The forces are those of the sets alone at last, whatever they were before.
+  std::vector<double> start;
+  for (std::size_t i = 0; i < parts_.size() && is_rough(); ++i)
+    start.push_back(dot_of(along_[i].direction, forces_[parts_[i].row]));
   forces_.assign(rows.size(), Vector3d::Zero());
   bool slips = false;
   for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -123,7 +179,7 @@ Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, const So
     for (std::size_t i = 0; i < parts_.size(); ++i)
       right[i] -= dot_of(along_[i].direction, (*moved)[parts_[i].row]);
   }
-  auto sizes = matrix_.solved(right, plate, is_rough() ? rough : exact);
+  auto sizes = matrix_.solved(right, plate, is_rough() ? rough : exact, std::move(start));
   if (!sizes) return fail(sizes.error());
   sizes_ = *std::move(sizes);
   for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -132,6 +188,38 @@ Result<void> Complementarity::turn(const std::vector<ContactRow>& rows, const So
   if (!moved) return fail(moved.error());
   ways_ = *std::move(moved);
   return {};
+}
+
+std::size_t Complementarity::pushing() const {
+  return static_cast<std::size_t>(std::ranges::count(pushes_, true));
+}
+
+// Where many push, leaves out all rows but those of which the first `few` are spread over all that
+// push: their set is soon found, and the plate that lies on them tells the set of more.
+bool Complementarity::begin_with_few(const std::vector<ContactRow>& rows, std::size_t few) {
+  constexpr std::size_t many = 400;
+  if (pushing() <= many) return false;
+  depths_ = depths_of(rows);
+  std::vector<int> depths;  // of those that push
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (pushes_[k]) depths.push_back(depths_[k]);
+  std::ranges::nth_element(depths, depths.begin() + static_cast<std::ptrdiff_t>(few));
+  depth_ = depths[few];
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (is_left_out(k) && !rows[k].sticks) pushes_[k] = false;
+  return true;
+}
+
+// Adds rows as long as few are wrong; whether it did.
+bool Complementarity::add_rows(const std::vector<ContactRow>& rows, double tolerance,
+                               std::vector<std::size_t>& wrong) {
+  bool is_more = false;
+  while (!depths_.empty() && 50 * wrong.size() <= pushing()) {
+    if (++depth_ > most_depth) depths_.clear();
+    wrong = wrong_rows(rows, tolerance);
+    is_more = true;
+  }
+  return is_more;
 }
 
 // Those that push the wrong way, and those that do not push and are not kept.
@@ -147,7 +235,7 @@ std::vector<std::size_t> Complementarity::wrong_rows(const std::vector<ContactRo
   std::size_t part = 0;
   for (std::size_t k = 0; k < rows.size(); ++k) {
     while (part < parts_.size() && parts_[part].row < k) ++part;
-    if (rows[k].sticks) continue;
+    if (rows[k].sticks || is_left_out(k)) continue;
     if (pushes_[k]) {
       if (sizes_[part] < -(is_rough() ? 1e-6 : 1e-13) * most) wrong.push_back(k);
     } else if (rows[k].lift - dot_of(rows[k].normal, ways_[k]) > fine) {
@@ -224,16 +312,29 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
   // ring, each larger than the one before. Then those that pull go before those that lack join.
   constexpr int patience = 40, most_patience = 400;
   constexpr int turns_of_newton = 40;  // that may be needed; then as many smooth ones
-  begin(rows, bounds);
+  constexpr std::size_t few = 50;
+  depths_.clear();
+  const bool is_new = begin(rows, bounds);
   int updates = 0;
-  std::size_t fewest = std::numeric_limits<std::size_t>::max();
+  std::size_t fewest = std::numeric_limits<std::size_t>::max(), wrong_before = fewest;
   int waited = 0;
   // Single pivots end by themselves; the bound is far beyond what they need.
   const std::size_t most_turns = 1000 + 20 * rows.size();
+  bool has_begun_with_few = !bounds.empty() || (is_new && begin_with_few(rows, few));
   for (std::size_t turns = 0; turns < most_turns; ++turns) {
     if (context_.is_stopped()) return interrupted();
     if (auto turned = turn(rows, plate); !turned) return fail(turned.error());
     std::vector<std::size_t> wrong = wrong_rows(rows, tolerance);
+    // A set that is known is wrong at its border, if at all; blocks may soon mend that.
+    const bool is_slow = 3 * wrong.size() > 2 * std::exchange(wrong_before, wrong.size());
+    if (!has_begun_with_few && is_slow && 16 * wrong.size() > pushing()) {
+      has_begun_with_few = true;
+      if (begin_with_few(rows, 4 * wrong.size() > pushing() ? few : pushing() / 16)) continue;
+    }
+    if (add_rows(rows, tolerance, wrong)) {
+      fewest = std::numeric_limits<std::size_t>::max();
+      waited = 0;
+    }
     if (wrong.empty()) {
       bool is_settled = true;
       if (!bounds.empty()) {
@@ -263,6 +364,10 @@ Result<std::vector<Vector3d>> Complementarity::solve(const std::vector<ContactRo
       std::erase_if(wrong, [&](std::size_t row) { return !pushes_[row]; });
     if (waited > most_patience) wrong.erase(wrong.begin() + 1, wrong.end());
     for (const std::size_t row : wrong) pushes_[row] = !pushes_[row];
+    // What is left of a set that is nearly right is seen as exactly as it can be.
+    constexpr std::size_t most_rough_turns = 100;
+    if (bounds.empty() && depths_.empty())
+      is_rough_ = 500 * wrong.size() > pushing() && turns < most_rough_turns;
   }
   return fail(
       ErrorCode::SolverFailed,

@@ -57,7 +57,12 @@ class Complementarity {
   };
 
   bool is_rough() const { return is_rough_ && !matrix_.is_dense(); }
-  void begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
+  bool is_left_out(std::size_t row) const { return !depths_.empty() && depths_[row] > depth_; }
+  std::size_t pushing() const;
+  bool begin_with_few(const std::vector<ContactRow>& rows, std::size_t few);
+  bool add_rows(const std::vector<ContactRow>& rows, double tolerance,
+                std::vector<std::size_t>& wrong);
+  bool begin(const std::vector<ContactRow>& rows, const std::vector<double>& bounds);
   void keep(const std::vector<ContactRow>& rows);
   void list_parts(const std::vector<ContactRow>& rows);
   double lift_of(const std::vector<ContactRow>& rows, std::size_t part) const;
@@ -70,7 +75,11 @@ class Complementarity {
 
   ContactMatrix matrix_;
   RunContext context_;
-  std::vector<bool> pushes_;        // of each row
+  std::vector<bool> pushes_;  // of each row
+  // While only some rows are solved for, the depth of each, and that down to which they are; empty:
+  // all are.
+  std::vector<int> depths_;
+  int depth_ = 0;
   bool is_smooth_ = false;          // friction is that of springs
   bool is_rough_ = true;            // solves are: the sets are not right yet
   std::vector<Friction> friction_;  // of each row

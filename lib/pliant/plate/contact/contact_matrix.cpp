@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -50,13 +51,15 @@ Result<std::vector<Vector3d>> ContactMatrix::ways(std::span<const PlacedVector> 
                                                   std::span<const int> unknowns,
                                                   const SolvedMatrix& plate) const {
   std::vector<Vector3d> all;
-  if (is_dense_) {
-    std::vector<const double*> columns;
-    for (const PlacedVector& force : forces) columns.push_back(columns_.of(force.unknown));
-    for (const int unknown : unknowns) {
-      Vector3d way(0, 0, 0);
-      for (std::size_t k = 0; k < forces.size(); ++k) way += columns[k][unknown] * forces[k].vector;
-      all.push_back(way);
+  // A solve costs about as much as so many columns for all unknowns of the plate.
+  constexpr std::size_t columns_of_a_solve = 16;
+  if (is_dense_ && forces.size() * unknowns.size() <=
+                       columns_of_a_solve * static_cast<std::size_t>(plate.size)) {
+    all.assign(unknowns.size(), Vector3d::Zero());
+    for (const PlacedVector& force : forces) {
+      const double* const column = columns_.of(force.unknown);
+      for (std::size_t i = 0; i < unknowns.size(); ++i)
+        all[i] += column[unknowns[i]] * force.vector;
     }
     return all;
   }
@@ -141,6 +144,17 @@ std::vector<double> ContactMatrix::solved_densely(std::vector<double> x) const {
 
 // Makes the preconditioner.
 Result<void> ContactMatrix::surround(const SolvedMatrix& plate) {
+  if (auto made = make_schur(plate); !made) return made;
+  // What gives by itself needs the less of the plate: 1 for a force that does not.
+  shares_.clear();
+  for (const ContactForce& force : forces_) {
+    const double own = force.give > 0 ? matrix_->coeff(force.unknown, force.unknown) : 0;
+    shares_.push_back(1 / std::sqrt(1 + force.give * own));
+  }
+  return {};
+}
+
+Result<void> ContactMatrix::make_schur(const SolvedMatrix& plate) {
   if (!matrix_) {
     const auto upper = plate.upper();
     if (!upper) return fail(upper.error());
@@ -170,11 +184,6 @@ Result<std::vector<double>> ContactMatrix::times(const std::vector<double>& x,
   return product;
 }
 
-// What gives by itself needs the less of the plate: 1 for a force that does not.
-double ContactMatrix::share(const ContactForce& force) const {
-  return 1 / std::sqrt(1 + force.give * matrix_->coeff(force.unknown, force.unknown));
-}
-
 Result<std::vector<double>> ContactMatrix::preconditioned(const std::vector<double>& x) const {
   Field pressed = Field::Zero(static_cast<Eigen::Index>(unknowns_.size()), 3);
   const auto for_each = [&](const auto& visit) {
@@ -185,23 +194,30 @@ Result<std::vector<double>> ContactMatrix::preconditioned(const std::vector<doub
     }
   };
   for_each([&](std::size_t k, Eigen::Index place) {
-    pressed.row(place) += share(forces_[k]) * x[k] * forces_[k].direction.transpose();
+    pressed.row(place) += shares_[k] * x[k] * forces_[k].direction.transpose();
   });
   const auto product = schur_->times(pressed);
   if (!product) return fail(product.error());
   std::vector<double> result(x.size());
   for_each([&](std::size_t k, Eigen::Index place) {
-    result[k] = share(forces_[k]) * dot_of(forces_[k].direction, product->row(place).transpose());
+    result[k] = shares_[k] * dot_of(forces_[k].direction, product->row(place).transpose());
   });
   return result;
 }
 
-// Conjugate gradients from 0 on.
+// Conjugate gradients.
 Result<std::vector<double>> ContactMatrix::solved(const std::vector<double>& right,
-                                                  const SolvedMatrix& plate, double least) {
+                                                  const SolvedMatrix& plate, double least,
+                                                  std::vector<double> start) {
   if (is_dense_) return solved_densely(right);
   constexpr int most_turns = 500;
-  std::vector<double> x(right.size(), 0.0), left = right, way;
+  std::vector<double> left = right, x = std::move(start), way;
+  x.resize(right.size(), 0.0);
+  if (std::ranges::any_of(x, [](double number) { return number != 0; })) {
+    auto product = times(x, plate);
+    if (!product) return product;
+    for (std::size_t k = 0; k < left.size(); ++k) left[k] -= (*product)[k];
+  }
   const double whole = largest(right);
   double before = 0;
   for (int turn = 0; turn < most_turns && largest(left) > least * whole; ++turn) {

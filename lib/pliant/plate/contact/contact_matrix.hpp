@@ -58,10 +58,11 @@ class ContactMatrix {
   /// Interrupted.
   Result<void> factor(std::span<const ContactForce> forces, const SolvedMatrix& plate);
 
-  /// The sizes of the forces that move their unknowns so far along them. Requires: `factor`
-  /// succeeded last, for the same plate.
+  /// The sizes of the forces that move their unknowns so far along them, but for `least` of it if
+  /// they are many; then the search begins with `start`, none: with 0. Requires: `factor` succeeded
+  /// last, for the same plate.
   Result<std::vector<double>> solved(const std::vector<double>& right, const SolvedMatrix& plate,
-                                     double least = 1e-13);
+                                     double least = 1e-13, std::vector<double> start = {});
 
   /// The ways on which forces move some unknowns. Requires: those with a force are among the ones
   /// of `factor`.
@@ -75,9 +76,9 @@ class ContactMatrix {
   void make_room(std::size_t count, std::size_t kept);
   std::vector<double> solved_densely(std::vector<double> x) const;
   Result<void> surround(const SolvedMatrix& plate);
+  Result<void> make_schur(const SolvedMatrix& plate);
   Result<std::vector<double>> times(const std::vector<double>& x, const SolvedMatrix& plate) const;
   Result<std::vector<double>> preconditioned(const std::vector<double>& x) const;
-  double share(const ContactForce& force) const;
 
   InverseColumns& columns_;
   RunContext context_;
@@ -93,6 +94,7 @@ class ContactMatrix {
   std::optional<SparseMatrix> matrix_;  // of the plate
   std::optional<NearbySchur> schur_;
   std::vector<int> schur_unknowns_;  // of `schur_`
+  std::vector<double> shares_;       // of the plate that the forces need
 };
 
 }  // namespace pliant

@@ -72,11 +72,16 @@ Result<NearbySchur> NearbySchur::make(const SparseMatrix& matrix, const std::vec
 }
 
 Result<Field> NearbySchur::times(const Field& x) const {
-  Field product = own_ * x;
+  Field product = Field::Zero(x.rows(), 3), others = Field::Zero(across_.rows(), 3);
+  std::vector<int> columns;
+  for (int k = 0; k < 3; ++k)
+    if (!x.col(k).isZero(0)) columns.push_back(k);
+  for (const int k : columns) product.col(k) = own_ * x.col(k);
   if (!factor_) return product;
-  const auto solved = factor_->solve(across_ * x);
+  for (const int k : columns) others.col(k) = across_ * x.col(k);
+  const auto solved = factor_->solve(others);
   if (!solved) return fail(solved.error());
-  product -= across_.transpose() * *solved;
+  for (const int k : columns) product.col(k) -= across_.transpose() * solved->col(k);
   return product;
 }
 

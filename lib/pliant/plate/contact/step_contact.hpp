@@ -13,10 +13,12 @@ struct ContactRow {
   int unknown = 0;
   Vector3d normal = {0, 1, 0};  ///< of length 1
   double lift = 0;              ///< > 0: the step without contact violates it [length]
-  bool lies = false;            ///< whether the unknown lay there when the step began
+  bool lies = false;            ///< whether the unknown was close to it when the step began
+  bool rests = false;           ///< and as close as one that was pushed
   bool sticks = false;          ///< then d is -slip across the normal, and lift along it
   double friction = 0;          ///< mu >= 0
   Vector3d slip = {0, 0, 0};    ///< from where it touched to the end of the step without contact
+  Vector3d place = {0, 0, 0};   ///< where it touched; no force depends on it [length]
   int collider = 0;             ///< rows of one unknown and collider are one from solve to solve
 };
 
