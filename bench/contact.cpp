@@ -5,17 +5,19 @@
 //   near   a ball passes near it and touches nothing
 //   mesh   the same with a mesh of 10^5 triangles; one that a cache moves is "cached", and one that
 //          encloses all of the sheet, with a hollow, is "around"
+//   rows   a force that moves on presses it on a floor, which pushes so many nodes or nearly
 //   others a ball or a floor touches it and moves on in each frame; the nodes that it pushes in the
 //          last frame, and the median; first: the frame in which it meets the sheet
 //
 // Times are those of the processor; in brackets as a part of the free one.
-// Run: build/release/bench/contact [--sides 101,201] [--frames N]
+// Run: build/release/bench/contact [--sides 101,201] [--frames N] [--only PART_OF_A_NAME]
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -87,7 +89,8 @@ struct Case {
   Solid shape = SphereSolid{0.1};
   bool has_collider = true;
   double first = 0, last = 0;  // height of its centre, or of the floor, at the first and last frame
-  double load = 0;             // down, on all of the sheet
+  double load = 0;             // down
+  double radius = 0;           // within which it presses, moving on; 0: on all of the sheet
   double density = 1;
   bool is_cached = false;  // each frame has a mesh of its own
 };
@@ -107,7 +110,12 @@ Outcome run(const Case& of, const Grid& grid, int frames) {
     inputs.dynamics = {of.density, of.density};
     inputs.frame_length = frame_length;
     inputs.dt = frame_length / 5;
-    if (of.load != 0) {
+    if (of.radius != 0) {
+      inputs.forces.push_back({.kind = PointForce{{0.02 * frame / frames, 0, 0.01}, {0, -1, 0}},
+                               .magnitude = of.load,
+                               .deformation_radius = 0,
+                               .force_radius = of.radius});
+    } else if (of.load != 0) {
       inputs.forces.push_back({.kind = UniformForce{{0, -1, 0}},
                                .magnitude = of.load,
                                .deformation_radius = 0,
@@ -146,14 +154,24 @@ Outcome run(const Case& of, const Grid& grid, int frames) {
 int main(int argc, char** argv) {
   std::vector<int> sides = {101, 201};
   int frames = 25;
-  if (!read_options(argc, argv, {{"--sides", &sides}, {"--frames", &frames}},
-                    "contact [--sides 101,201] [--frames N]")) {
+  std::string only;
+  if (!read_options(argc, argv, {{"--sides", &sides}, {"--frames", &frames}, {"--only", &only}},
+                    "contact [--sides 101,201] [--frames N] [--only PART_OF_A_NAME]")) {
     return 2;
   }
   const MeshSolid hill = mesh_of_ball(5, 224, false);
   const MeshSolid mesh = mesh_of_ball(0.1, 224, false), around = mesh_of_ball(1, 158, true);
   for (const int side : sides) {
     const Grid grid{side, side, 1.0 / (side - 1), 1.0 / (side - 1)};
+    // Within so many nodes around.
+    const auto pressed = [&](std::string_view name, double nodes) {
+      return Case{.name = name,
+                  .shape = PlaneSolid{},
+                  .first = -0.002,
+                  .last = -0.002,
+                  .load = 20000,
+                  .radius = nodes * grid.hu};
+    };
     const std::vector<Case> cases = {
         {.name = "free", .has_collider = false, .load = 30},
         {.name = "near", .first = 0.2, .last = 0.15, .load = 0.1},
@@ -168,7 +186,15 @@ int main(int argc, char** argv) {
         {.name = "mesh ball", .shape = mesh, .first = 0.12, .last = 0.02},
         {.name = "cached ball", .shape = mesh, .first = 0.12, .last = 0.02, .is_cached = true},
         {.name = "ball", .first = 0.12, .last = 0.02},
+        pressed("50 rows", 3.6),
+        pressed("500 rows", 11.5),
+        pressed("5000 rows", 36),
         {.name = "light ball", .first = 0.12, .last = 0.02, .density = 40},
+        {.name = "heavy sheet",
+         .shape = SphereSolid{0.3},
+         .first = 0.32,
+         .last = 0.25,
+         .density = 1000},
         {.name = "floor", .shape = PlaneSolid{}, .first = -0.002, .last = -0.002, .load = 2000},
         {.name = "mesh floor", .shape = hill, .first = -5.002, .last = -5.002, .load = 2000},
         {.name = "ball floor",
@@ -184,6 +210,7 @@ int main(int argc, char** argv) {
     };
     double free_time = 0;
     for (const Case& one : cases) {
+      if (one.has_collider && one.name.find(only) == std::string_view::npos) continue;
       Outcome outcome = run(one, grid, frames);
       const double most = *std::max_element(outcome.times.begin(), outcome.times.end());
       const double time = typical(outcome.times, false);
