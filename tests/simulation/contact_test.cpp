@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "pliant/contact/node_rows.hpp"
 #include "support/catch.hpp"
 #include "support/met_scenes.hpp"
 
@@ -121,6 +122,22 @@ TEST_CASE("a single node does what can be computed by hand", "[simulation][conta
     CHECK_THAT(frames[k](4, 1), WithinAbs(w, 1e-12));
   }
   CHECK(touched);
+}
+
+TEST_CASE("however fast a collider turns, no contact is lost", "[simulation][contact]") {
+  // A node that stands still goes straight in the ball's frame, and so into the ball.
+  Surface surface = light(sheet("s", 3));
+  surface.solver.dt = 1.0;  // one step a frame
+  Collider ball = ball_on_keys(1, {{1, {0, 1.3, 0}}});
+  ball.transform.rotate = vector_curve({{1, {0, 0, 0}}, {2, {120, 0, 0}}});
+  const SampledCollider turning{standing(ball, 1).first, standing(ball, 2).first, 0};
+  const Vector3d node(0, 0, 0);
+  const auto row = row_of(placed(turning, 0), placed(turning, 1), node, node, 1e-9);
+  REQUIRE(row);
+  REQUIRE(row->lack(node) > 0.1);
+  const Vector3d end = node + row->lack(node) * row->normal;
+  const std::vector<Field> frames = frames_met(met_scene(surface, {ball}));
+  for (int k = 0; k < 3; ++k) CHECK_THAT(frames[1](4, k), WithinAbs(end[k], 1e-12));
 }
 
 TEST_CASE("a collider selects what comes near it, as a force does", "[simulation][contact]") {

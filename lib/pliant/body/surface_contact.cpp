@@ -227,9 +227,12 @@ std::vector<SurfaceContact::Pair> SurfaceContact::near_pairs() const {
     const Eigen::RowVector3d middle = from.translation.transpose();
     const double way = length_of(to.translation - from.translation);
     const double most = (std::max(reach_of(from), reach_of(to)) + way + longest) * (1 + 1e-9);
+    // In a frame that turns, what stands still goes straight too, nearer to the origin than it is.
+    const double turn = (to.rotation - from.rotation).norm();
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::RowVector3d x = before_.row(k) - middle;
-      const bool is_near = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] <= most * most;
+      const double distance = length_of(x);
+      const bool is_near = distance - turn * distance <= most;
       if (is_near) pairs.push_back({static_cast<int>(k), static_cast<int>(c)});
     }
   }
