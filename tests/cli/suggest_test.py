@@ -166,6 +166,29 @@ class Suggest(Command):
             found = told["frequency"]["found"]
             self.assertLess(abs(measured / found - 1), 0.02, (measured, found))
 
+    def test_what_a_collider_stops_has_the_peak_of_a_bake(self):
+        text = """<scene version="1" start="1" end="16">
+  <surface name="sheet"><grid columns="13" rows="11" width="10" depth="10"/>
+    <material density="1" damping="15"/><solver region="all"/></surface>
+  <point name="poke" center="{at}" direction="0 -1 0" forceRadius="2.5" magnitude="{magnitude}"/>
+  <collider name="floor"><plane/><transform translate="0 -0.5 0"/></collider>
+  <collider name="ball"><sphere/><transform>
+    <animate attribute="translate"><key frame="1" value="0 1.5 0"/><key frame="9" value="0 0.7 0"/></animate>
+  </transform></collider>
+</scene>
+"""
+        for at, direction, peak, is_met in (("0 0 0", 1, 0.4, True), ("0 0 0", 1, 0.8, False),
+                                            ("3 0 1", -1, 0.9, True), ("3 0 1", 1, 0.2, False)):
+            with self.subTest(at=at, peak=peak):
+                scene = self.write("scene.xml", text.format(at=at, magnitude=900 * direction))
+                told = self.suggest(scene, "--peak", str(peak), "--write", code=0 if is_met else 1)
+                away = self.bake(self.read("scene.xml").decode())
+                shown = np.sqrt((away ** 2).sum(axis=2)).max()
+                self.assertAlmostEqual(told["peak"]["found"] / shown, 1, places=9)
+                self.assertEqual(told["met"], is_met)
+                if not is_met:
+                    self.assertRegex(told["peak"]["reason"], "colliders hold it back|moves so far without these forces")
+
     def test_what_was_found_is_printed_though_it_cannot_be_written(self):
         self.write("rig.xml", '<fragment><point name="poke" center="0 0 0" deformationRadius="4" forceRadius="2"'
                               ' magnitude="900"/></fragment>')

@@ -14,6 +14,12 @@
 
 namespace pliant {
 
+namespace {
+
+constexpr int solves_with_contact = 10;  // in a step, about
+
+}  // namespace
+
 PreviewBody::PreviewBody(const RestShape& shape, const Surface& surface, double frame_seconds,
                          bool with_swings, RunContext context)
     : shape_(shape),
@@ -98,11 +104,11 @@ void PreviewBody::begin(bool is_plain) {
 Result<double> PreviewBody::step(BodyInputs inputs) {
   if (is_plain_) inputs.tangents = {};
   const bool is_still = is_at_rest_;
-  is_at_rest_ =
-      is_at_rest_ && std::all_of(inputs.forces.begin(), inputs.forces.end(),
-                                 [](const SampledForce& force) { return force.magnitude == 0; });
+  is_at_rest_ = is_at_rest_ && inputs.colliders.empty() &&
+                std::all_of(inputs.forces.begin(), inputs.forces.end(),
+                            [](const SampledForce& force) { return force.magnitude == 0; });
   if (is_at_rest_) return 0.0;
-  if (is_still) {
+  if (is_still && inputs.colliders.empty()) {
     if (auto planned = plan(inputs, is_plain_); !planned) return fail(planned.error());
     if (has_no_load(plan_)) {
       is_at_rest_ = true;
@@ -114,7 +120,8 @@ Result<double> PreviewBody::step(BodyInputs inputs) {
   if (!stepped) return fail(stepped.error());
   const StepPlan& plan = body(is_plain_).last_step();
   // Exact ones are divided further.
-  const int solves = plan.steps.count * (plan.steps.are_exact() ? 24 : 1);
+  const int solves = plan.steps.count * (plan.steps.are_exact() ? 24 : 1) *
+                     (inputs.colliders.empty() ? 1 : solves_with_contact);
   return least_cost() + static_cast<double>(plan.unknown_count()) * solves;
 }
 

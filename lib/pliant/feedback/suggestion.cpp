@@ -357,7 +357,11 @@ class Suggester {
 
   // Magnitudes for the peak, from those of the present scene on.
   Result<void> choose_magnitudes() {
-    if (subject_.forces.empty()) return {};
+    if (subject_.forces.empty()) {
+      if (previewer_.meets_colliders())
+        peak_miss_ = {Obstacle::MovesAnyway, "only colliders move it, which no magnitude changes"};
+      return {};
+    }
     const double first = factor_;
     bool is_open = false;
     const auto peak_at = [&](double factor) -> Result<double> {
@@ -388,8 +392,9 @@ class Suggester {
       case Obstacle::LeavesReach:
         return {found.obstacle,
                 fmt::format(
-                    "the surface moves out of the reach of its forces: {}; measure=\"rest\" "
+                    "{}the surface moves out of the reach of its forces: {}; measure=\"rest\" "
                     "keeps pushing",
+                    previewer_.meets_colliders() ? "colliders hold it back, or " : "",
                     found.other_peak == 0 ? "more magnitude does not move it further"
                                           : fmt::format("its peak jumps from {:.4g} to {:.4g}",
                                                         std::min(found.peak, found.other_peak),

@@ -16,6 +16,19 @@ namespace {
 
 constexpr double shared_nodes = 1e8;  // solved for shares, per preview
 
+// The colliders that target a surface and are not disabled at all frames.
+std::vector<std::size_t> colliders_of(const Scene& scene, const Surface& surface) {
+  std::vector<std::size_t> found;
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const Collider& one = scene.colliders[k];
+    const bool is_off = !one.enabled.is_animated() && !one.enabled.at(scene.start);
+    const bool is_target =
+        one.targets.empty() || std::ranges::find(one.targets, surface.name) != one.targets.end();
+    if (is_target && !is_off) found.push_back(k);
+  }
+  return found;
+}
+
 }  // namespace
 
 // The cases of a surface, in the order of the results.
@@ -91,6 +104,7 @@ SurfacePreviewer::SurfacePreviewer(const Scene& scene, const Surface& surface,
       first_(first_solved_frame(scene_, surface_)),
       last_(surface_.solver.loop ? first_ + *surface_.solver.loop - 1
                                  : std::max(first_, scene_.end - 1)),
+      colliders_(colliders_of(scene_, surface_)),
       most_frames_(std::max(4.0, most_searched / body_.node_count())) {}
 
 void SurfacePreviewer::report(std::string_view work, int done, int count) const {
@@ -103,7 +117,7 @@ bool SurfacePreviewer::answers_in_proportion(const PreviewCase& one) const {
 
 bool SurfacePreviewer::plays_in_proportion(const PreviewCase& one) const {
   const BodySettings settings = body_settings(surface_, shape_.grid.has_value());
-  return answers_in_proportion(one) && settings.measure == Measure::Rest &&
+  return answers_in_proportion(one) && colliders_.empty() && settings.measure == Measure::Rest &&
          settings.release == Release::Freeze;
 }
 
@@ -179,7 +193,7 @@ Result<void> SurfacePreviewer::play(PreviewCase& one, double& nodes_left, double
     if (is_loop && begins_cycle(scene_, surface_, frame + 1)) {
       body_.return_to_cycle();
     } else if (is_solved_at(scene_, surface_, frame)) {
-      auto stepped = body_.step(inputs_of(one, solved_frame(scene_, surface_, frame)));
+      auto stepped = body_.step(played_inputs_of(one, solved_frame(scene_, surface_, frame)));
       if (!stepped) return located(stepped.error(), frame);
       nodes_left -= *stepped;
       if (nodes_left <= 0) return {};
@@ -221,7 +235,7 @@ Result<bool> SurfacePreviewer::begin_cycle(PreviewCase& one) {
     if (frame == 0) report("looking for the cycle of", ++round, max_rounds);
     at = first_ + frame;
     if (!is_solved_at(scene_, surface_, at)) return {};
-    const auto stepped = body_.step(inputs_of(one, at));
+    const auto stepped = body_.step(played_inputs_of(one, at));
     if (!stepped) return fail(stepped.error());
     return {};
   });
@@ -233,6 +247,16 @@ Result<bool> SurfacePreviewer::begin_cycle(PreviewCase& one) {
 
 BodyInputs SurfacePreviewer::inputs_of(const PreviewCase& one, int frame) {
   return one.acting.at(frame, body_.faults());
+}
+
+// The same as it is played: with what stops the surface.
+BodyInputs SurfacePreviewer::played_inputs_of(const PreviewCase& one, int frame) {
+  BodyInputs inputs = inputs_of(one, frame);
+  if (colliders_.empty()) return inputs;
+  MetColliders met{.colliders = colliders_, .animation = shape_.animation.get()};
+  if (shape_.collider_meshes) met.meshes = *shape_.collider_meshes;
+  sample_colliders(scene_, surface_, met, frame, inputs, *body_.faults());
+  return inputs;
 }
 
 // The frames at which the case may have its greatest effect; if there are many, evenly spaced

@@ -69,8 +69,12 @@ class SurfacePreviewer {
   /// Whether the displacement of a static surface is the magnitudes' times a factor if they are.
   bool answers_in_proportion(const PreviewCase& one) const;
 
-  /// Whether the whole animation is: no force pushes other nodes because it moves the surface.
+  /// Whether the whole animation is: no force pushes other nodes because it moves the surface, and
+  /// no collider stops any.
   bool plays_in_proportion(const PreviewCase& one) const;
+
+  /// Whether colliders may stop the surface. They do where it is played, and nowhere else.
+  bool meets_colliders() const { return !colliders_.empty(); }
 
   /// Whether a peak is so small that rounding of positions hides it.
   bool is_hidden_by_rounding(double peak) const;
@@ -97,6 +101,7 @@ class SurfacePreviewer {
   };
 
   BodyInputs inputs_of(const PreviewCase& one, int frame);
+  BodyInputs played_inputs_of(const PreviewCase& one, int frame);
   std::vector<int> frames_of(PreviewCase& one);
   std::vector<int> strongest_of(const PreviewCase& one, const std::vector<int>& frames) const;
   Result<void> look_at(PreviewCase& one, int frame);
@@ -114,8 +119,9 @@ class SurfacePreviewer {
   PreviewDepth depth_;
   ProgressReport progressed_;
   PreviewBody body_;
-  std::optional<Settled> settled_;  // the last one
-  int first_, last_;                // frames whose solve affects the animation
+  std::optional<Settled> settled_;      // the last one
+  int first_, last_;                    // frames whose solve affects the animation
+  std::vector<std::size_t> colliders_;  // that may stop the surface
   double most_frames_;
 };
 

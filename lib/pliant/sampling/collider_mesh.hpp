@@ -53,6 +53,9 @@ class ColliderMesh {
   mutable std::vector<Kept> kept_;  // the last ones, the newest first
 };
 
+/// Of the colliders of a scene; null: it has no mesh, or is not told.
+using ColliderMeshes = std::vector<std::shared_ptr<const ColliderMesh>>;
+
 /// As `ColliderMesh::make`, but that of the same collider if the context's shelf has it; otherwise
 /// the new one is kept there. Requires: the files do not change while the shelf lives.
 Result<std::shared_ptr<const ColliderMesh>> find_collider_mesh(const Collider& collider,

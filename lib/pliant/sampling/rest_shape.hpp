@@ -22,6 +22,7 @@ class AnimatedShape;
 class Binding;
 class Body;
 class Carriers;
+class ColliderMesh;
 struct NodeFactors;
 struct NodeFaces;
 struct TriangleSurface;
@@ -45,6 +46,10 @@ struct RestShape {
 
   /// How what follows a surface is carried; null: nothing does. The same for all of a scene.
   std::shared_ptr<const Carriers> carriers = {};
+
+  /// The meshes of the scene's colliders, one for each; null: there are no colliders. The same for
+  /// all of a scene.
+  std::shared_ptr<const std::vector<std::shared_ptr<const ColliderMesh>>> collider_meshes = {};
 
   /// The factors of the material's maps at the nodes; null: there is no map.
   std::shared_ptr<const NodeFactors> factors = {};

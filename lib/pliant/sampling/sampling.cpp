@@ -196,33 +196,6 @@ ColliderPose sample_pose(const Collider& collider, int frame, const ColliderMesh
           collider.offset.at(frame)[0]};
 }
 
-// The colliders that a surface meets on the way to the next frame, and its own way.
-void sample_colliders(const Scene& scene, const SceneSampling& sampling, std::size_t index,
-                      int frame, SurfaceInputs& inputs) {
-  const Surface& surface = scene.surfaces[index];
-  for (const std::size_t k : sampling.targets(index).colliders) {
-    const Collider& collider = scene.colliders[k];
-    if (!collider.enabled.at(frame)) continue;
-    const bool selects = surface.solver.region == SolvedRegion::Forces;
-    const auto pose = [&](int at) {
-      return sample_pose(collider, at, sampling.mesh(k).get(), *inputs.faults);
-    };
-    inputs.body.colliders.push_back(
-        {pose(frame), pose(frame + 1), selects ? collider.deformation_radius.at(frame)[0] : 0,
-         collider.friction.at(frame)[0], collider.stick.at(frame), static_cast<int>(k)});
-  }
-  if (inputs.body.colliders.empty()) return;
-  inputs.body.motion = {surface.transform.placement_at(frame),
-                        surface.transform.placement_at(frame + 1)};
-  const AnimatedShape* const animation = sampling.animation(index);
-  if (!animation) return;
-  if (auto next = animation->nodes_at(frame + 1)) {
-    inputs.body.motion->next_shape = *std::move(next);
-  } else {
-    inputs.faults->add(next.error().message);
-  }
-}
-
 bool holds(const std::vector<std::string>& targets, const std::string& surface) {
   return targets.empty() || std::find(targets.begin(), targets.end(), surface) != targets.end();
 }
@@ -432,6 +405,30 @@ std::optional<Solid> solid_at(const Collider& collider, int frame) {
   return placed({pose, pose}, 0).kept.solid;
 }
 
+void sample_colliders(const Scene& scene, const Surface& surface, const MetColliders& met,
+                      int frame, BodyInputs& inputs, ForceFaults& faults) {
+  inputs.colliders.clear();
+  for (const std::size_t k : met.colliders) {
+    const Collider& collider = scene.colliders[k];
+    if (!collider.enabled.at(frame)) continue;
+    const bool selects = surface.solver.region == SolvedRegion::Forces;
+    const ColliderMesh* const mesh = k < met.meshes.size() ? met.meshes[k].get() : nullptr;
+    const auto pose = [&](int at) { return sample_pose(collider, at, mesh, faults); };
+    inputs.colliders.push_back(
+        {pose(frame), pose(frame + 1), selects ? collider.deformation_radius.at(frame)[0] : 0,
+         collider.friction.at(frame)[0], collider.stick.at(frame), static_cast<int>(k)});
+  }
+  if (inputs.colliders.empty()) return;
+  inputs.motion = {surface.transform.placement_at(frame),
+                   surface.transform.placement_at(frame + 1)};
+  if (!met.animation) return;
+  if (auto next = met.animation->nodes_at(frame + 1)) {
+    inputs.motion->next_shape = *std::move(next);
+  } else {
+    faults.add(next.error().message);
+  }
+}
+
 SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, std::size_t surface,
                             int frame, SurfaceInputs reuse) {
   frame = solved_frame(scene, scene.surfaces[surface], frame);
@@ -454,7 +451,8 @@ SurfaceInputs sample_inputs(const Scene& scene, const SceneSampling& sampling, s
   forces.clear();
   selectors.clear();
   inputs.sources.clear();
-  sample_colliders(scene, sampling, surface, frame, inputs);
+  const MetColliders met{targets.colliders, sampling.meshes(), sampling.animation(surface)};
+  sample_colliders(scene, scene.surfaces[surface], met, frame, inputs.body, *inputs.faults);
 
   for (const auto& [index, place] : targets.forces) {
     const Force& force = scene.forces[index];

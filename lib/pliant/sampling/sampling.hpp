@@ -80,6 +80,7 @@ class SceneSampling {
   const std::shared_ptr<const ColliderMesh>& mesh(std::size_t collider) const {
     return meshes_[collider];
   }
+  const ColliderMeshes& meshes() const { return meshes_; }
 
   const Carriers& carriers() const { return *carriers_; }
 
@@ -93,7 +94,7 @@ class SceneSampling {
   std::vector<SurfaceTargets> targets_;
   std::vector<std::unique_ptr<NoiseClock>> clocks_;               // one per force
   std::vector<std::shared_ptr<const AnimatedShape>> animations_;  // one per surface
-  std::vector<std::shared_ptr<const ColliderMesh>> meshes_;       // one per collider
+  ColliderMeshes meshes_;                                         // one per collider
   std::shared_ptr<const Carriers> carriers_;
 };
 
@@ -107,6 +108,18 @@ ShapeFrames sample_shape(const AnimatedShape* animation, int frame, ForceFaults&
 /// The inputs of a surface without forces.
 BodyInputs sample_body(const Scene& scene, const Surface& surface, int frame,
                        const ShapeFrames& shape = {});
+
+/// What colliders a surface may meet.
+struct MetColliders {
+  std::span<const std::size_t> colliders = {};  ///< that target it, by their index in the scene
+  std::span<const std::shared_ptr<const ColliderMesh>> meshes = {};  ///< of all of the scene
+  const AnimatedShape* animation = nullptr;  ///< of the surface; null: it stays the same
+};
+
+/// Adds to the inputs of a surface at a frame which colliders are enabled, and how they and it go
+/// on to the next frame. Errors are added to `faults`.
+void sample_colliders(const Scene& scene, const Surface& surface, const MetColliders& met,
+                      int frame, BodyInputs& inputs, ForceFaults& faults);
 
 /// The inputs of a surface's solve at a frame, as of `solved_frame`; the surface by its index in
 /// the scene for which `sampling` was made. Reuses the memory of `reuse`, earlier inputs or empty

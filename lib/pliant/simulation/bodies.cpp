@@ -197,7 +197,13 @@ Result<void> Bodies::join_forces(std::span<ReservedShape> made) const {
   for (const ReservedShape& one : made) shapes.emplace_back(one.shape);
   const auto carriers = Carriers::make(scene_, shapes, context_.should_stop);
   if (!carriers) return fail(carriers.error());
-  for (ReservedShape& one : made) one.shape.carriers = *carriers;
+  const auto meshes = scene_.colliders.empty()
+                          ? nullptr
+                          : std::make_shared<const ColliderMeshes>(sampling_.meshes());
+  for (ReservedShape& one : made) {
+    one.shape.carriers = *carriers;
+    one.shape.collider_meshes = meshes;
+  }
   return {};
 }
 
