@@ -37,6 +37,31 @@ class Sweeps(SweepCommand):
             self.assertEqual(self.read("edited.npy"), self.read("one.npy"))
         self.assertEqual(len({row["hash"] for row in rows}), 8)
 
+    def test_the_channels_of_colliders_are_swept_as_any(self):
+        text = """<scene version="1" start="1" end="6">
+  <surface name="sheet"><grid columns="9" rows="8" width="4" depth="4"/>
+    <material density="0.02" damping="0.02"/><solver region="all" dt="0.02"/></surface>
+  <uniform name="weight" direction="0 -1 0" magnitude="400" forceRadius="100"/>
+  <collider name="ball" offset="{offset}"><sphere radius="{radius}"/><transform translate="{translate}"/></collider>
+  <collider name="floor" friction="{friction}"><plane/><transform translate="0 -0.2 0" rotate="0 0 5"/></collider>
+</scene>
+"""
+        plain = {"offset": "0", "radius": "0.8", "translate": "0 0.75 0", "friction": "0"}
+        for name, values in (("ball.translate", ("0 0.75 0", "0.3 0.5 0")), ("ball.radius", ("0.8", "1.1")),
+                             ("ball.offset", ("0", "0.2")), ("floor.friction", ("0", "0.7"))):
+            with self.subTest(name):
+                folder = name.replace(".", "-")
+                takes = self.write(folder + ".csv", f'{name}\n' + "".join(f'"{value}"\n' for value in values))
+                self.make(folder, "--write", "npy", scene=self.write("scene.xml", text.format(**plain)),
+                          vary=("--takes", takes))
+                bits = []
+                for number, value in enumerate(values):
+                    edited_scene = self.write("edited.xml", text.format(**{**plain, name.split(".")[1]: value}))
+                    self.run_pliant("bake", edited_scene, "-o", self.path("edited.npy"))
+                    bits.append(self.read("edited.npy"))
+                    self.assertTrue(bits[-1] == self.read(f"{folder}/takes/{number:05}.npy"))
+                self.assertTrue(bits[0] != bits[1])
+
     def test_measures_and_hash_are_those_of_the_animation(self):
         import numpy
         self.make("s", "--write", ".npy", "--frames", "2:7", vary=("--vary", "sheet.density=0.5,20"))
