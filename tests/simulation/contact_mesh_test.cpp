@@ -79,6 +79,31 @@ TEST_CASE("a mesh of a box does what the box does", "[simulation][contact][mesh]
   }
 }
 
+TEST_CASE("a mesh that is thinner than the nodes are apart warns as its box does",
+          "[simulation][contact][mesh]") {
+  const ScratchFolder folder;
+  const ClosedMesh mesh = write_mesh(folder, "box.obj", box_mesh({3, 1, 2}, 3));
+  const auto gaps_of = [](const Collider& one) {
+    Simulation simulation = Simulation::make(met_scene(wide_mat(), {one})).value();
+    std::vector<std::string> told;
+    for (const Warning& warning : simulation.warnings()) {
+      if (warning.kind == Warning::Kind::PassesBetween) told.push_back(warning.message());
+    }
+    return told;
+  };
+  for (const double thickness : {0.5, 1.9, 2.1, 5.0}) {
+    CAPTURE(thickness);
+    Collider box = dippers()[3], other = box;
+    other.shape = mesh;
+    box.transform.scale = other.transform.scale = Value<3>{1, -thickness, 1.5};
+    const std::vector<std::string> told = gaps_of(other);
+    // The nodes are 1 apart.
+    CHECK(told.size() == (thickness < 2 ? 1 : 0));
+    CHECK(told.size() == gaps_of(box).size());
+    for (const std::string& one : told) CHECK(one.find("its least radius is at most") != one.npos);
+  }
+}
+
 TEST_CASE("a cache moves the mesh of a collider as keys move a box",
           "[simulation][contact][mesh]") {
   const ScratchFolder folder;

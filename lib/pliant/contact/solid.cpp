@@ -127,6 +127,10 @@ double reach(const Solid& solid) {
 }
 
 double inner_radius(const Solid& solid) {
+  if (const auto* const mesh = std::get_if<MeshSolid>(&solid)) {
+    const PosedMesh::Box& around = mesh->posed->box(0);
+    return (around.high - around.low).minCoeff() / 2;
+  }
   const auto* const box = std::get_if<BoxSolid>(&solid);
   return box ? box->size.minCoeff() / 2 : least_radius(solid);
 }

@@ -73,8 +73,8 @@ Solid between(const Solid& one, const Solid& other, double t);
 /// No place of the solid is farther from the origin. Infinite for a plane. [length]
 double reach(const Solid& solid);
 
-/// Of the largest ball inside it, infinite for a plane; of a mesh 0, since it is not looked for.
-/// [length]
+/// Of the largest ball inside it, infinite for a plane; of a mesh half the least side of the box
+/// around it, along the axes of its frame, which is no less. [length]
 double inner_radius(const Solid& solid);
 
 /// The least radius of its curvature, infinite for a plane, 0 for a box with sharp edges or a mesh.

@@ -338,7 +338,9 @@ void add_gaps(std::vector<Warning>& warnings, const Scene& scene, const Surface&
   const double spacing = spacing_of(scene, surface, shape).mean;
   for (const std::size_t k : targets.colliders) {
     const Collider& collider = scene.colliders[k];
-    const std::optional<Solid> solid = solid_at(collider, scene.start);
+    const ColliderMesh* const mesh =
+        shape.collider_meshes ? (*shape.collider_meshes)[k].get() : nullptr;
+    const std::optional<Solid> solid = solid_at(collider, scene.start, mesh);
     if (!is_on(collider.enabled) || !solid) continue;
     const double radius = inner_radius(*solid);
     if (!(spacing > radius)) continue;
@@ -346,8 +348,8 @@ void add_gaps(std::vector<Warning>& warnings, const Scene& scene, const Surface&
     warning.kind = Kind::PassesBetween;
     warning.surface = surface.name;
     warning.force = collider.name;
-    warning.told =
-        fmt::format("they are {:.3g} apart, and its least radius is {:.3g}", spacing, radius);
+    warning.told = fmt::format("they are {:.3g} apart, and its least radius is {}{:.3g}", spacing,
+                               mesh ? "at most " : "", radius);
   }
 }
 

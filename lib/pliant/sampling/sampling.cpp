@@ -398,10 +398,11 @@ std::optional<Solid> shape_at(const Collider& collider, int frame) {
   return std::visit(At{frame}, collider.shape);
 }
 
-std::optional<Solid> solid_at(const Collider& collider, int frame) {
-  if (std::holds_alternative<ClosedMesh>(collider.shape)) return std::nullopt;
-  ForceFaults none;
-  const ColliderPose pose = sample_pose(collider, frame, nullptr, none);
+std::optional<Solid> solid_at(const Collider& collider, int frame, const ColliderMesh* mesh) {
+  if (std::holds_alternative<ClosedMesh>(collider.shape) && !mesh) return std::nullopt;
+  ForceFaults faults;
+  const ColliderPose pose = sample_pose(collider, frame, mesh, faults);
+  if (!faults.first().empty()) return std::nullopt;
   return placed({pose, pose}, 0).kept.solid;
 }
 

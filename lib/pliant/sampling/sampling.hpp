@@ -141,8 +141,9 @@ SampledForce sample_group(const Scene& scene, const Group& group, int frame, For
 /// The solid of a collider at a frame, without the scale; null: a mesh, which is in a file.
 std::optional<Solid> shape_at(const Collider& collider, int frame);
 
-/// The same, its scale taken up.
-std::optional<Solid> solid_at(const Collider& collider, int frame);
+/// The same, its scale taken up; null: a mesh that is not given, or whose cache cannot be read.
+std::optional<Solid> solid_at(const Collider& collider, int frame,
+                              const ColliderMesh* mesh = nullptr);
 
 /// A force or group as it is in the world at a frame: one that follows nothing, with the places and
 /// directions that it has there; itself if it follows nothing. Where nothing can carry it, it stays
