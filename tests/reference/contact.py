@@ -95,7 +95,7 @@ def least_gap(kind, lengths, x):
     return np.linalg.norm(way) - lengths[4] if way.any() else -np.inf
 
 
-def first_contact_with_mesh(mesh, before, after, x0, x1, slack):
+def first_contact_with_mesh(mesh, before, after, x0, x1, slack, note):
     """The same for a mesh, whose distance is not convex."""
     def gap(t):
         return gap_and_normal(mesh, (1 - t) * before + t * after, (1 - t) * x0 + t * x1)[0]
@@ -105,19 +105,19 @@ def first_contact_with_mesh(mesh, before, after, x0, x1, slack):
                + np.linalg.norm(points_of(change), axis=1).max())
     if least_gap(mesh, before, x0) > fastest or gap(0.0) > fastest:
         return None
-    first, t, before_it = None, 0.0, 0.0
+    first, t, before_it, lowest = None, 0.0, 0.0, np.inf
     while True:
         now = gap(t)
+        lowest = min(lowest, now)
         if now <= 0 and first is None:
             low, high = before_it, t
             for _ in range(60 if t > 0 else 0):
                 middle = (low + high) / 2
                 low, high = (middle, high) if gap(middle) > 0 else (low, middle)
             first = high
-        if now < -slack:
-            return first
-        if t >= 1:
-            return None
+        if now < -slack or t >= 1:
+            note(lowest + slack)
+            return first if now < -slack else None
         if now > 0:
             first = None
         before_it, t = t, min(1.0, t + max(abs(now) / fastest if fastest > 0 else 1.0, 1 / 400))
@@ -131,10 +131,10 @@ def support(kind, lengths, n):
     return abs(n[1]) * lengths[1] / 2 + lengths[0]
 
 
-def first_contact(kind, before, after, x0, x1, slack):
-    """t of the first contact on a straight way; None: there is none."""
+def first_contact(kind, before, after, x0, x1, slack, note):
+    """t of the first contact on a straight way; None: there is none. `note` is told by what length there is one."""
     if isinstance(kind, ClosedMesh):
-        return first_contact_with_mesh(kind, before, after, x0, x1, slack)
+        return first_contact_with_mesh(kind, before, after, x0, x1, slack, note)
 
     def gap(t):
         return gap_and_normal(kind, (1 - t) * before + t * after, (1 - t) * x0 + t * x1)[0]
@@ -142,16 +142,14 @@ def first_contact(kind, before, after, x0, x1, slack):
     most = np.linalg.norm(x1 - x0) + 2 * np.abs(after - before).sum()
     if gap(0.0) > most:  # a distance changes no faster
         return None
-    if gap(0.0) <= 0:
-        deepest = 0.0
-        if gap(0.0) >= -slack:
-            deepest = least(gap)
-        return 0.0 if gap(deepest) < -slack else None
-    lowest = least(gap)
+    lowest = 0.0 if gap(0.0) < -slack else least(gap)
+    note(gap(lowest) + slack)
     if not gap(lowest) < -slack:
         return None
+    if gap(0.0) <= 0:
+        return 0.0
     low, high = 0.0, lowest
-    for _ in range(200):
+    for _ in range(60):
         middle = (low + high) / 2
         low, high = (middle, high) if gap(middle) > 0 else (low, middle)
     return high
@@ -160,7 +158,7 @@ def first_contact(kind, before, after, x0, x1, slack):
 def least(gap):
     """Where a convex function on [0, 1] is least."""
     low, high = 0.0, 1.0
-    for _ in range(120):
+    for _ in range(45):
         one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
         low, high = (low, other) if gap(one) < gap(other) else (one, high)
     return min((0.0, low, high, 1.0), key=gap)
@@ -179,10 +177,17 @@ class Row:
 
 
 class Rows:
-    """Rows so chosen that all can be satisfied."""
+    """Rows so chosen that all can be satisfied; `diagonal` is the length of which lengths are a part."""
 
-    def __init__(self):
-        self.of_nodes = {}
+    def __init__(self, diagonal, diagnostics):
+        self.of_nodes, self.diagonal, self.diagnostics = {}, diagonal, diagnostics
+
+    def note_angles(self, row, own):
+        for other in own:
+            cosine = row.normal @ other.normal
+            self.diagnostics.note_rows(min(abs(cosine + 0.8), abs(cosine - 0.999)))
+        if len(own) == 2:
+            self.diagnostics.note_rows(abs(abs(np.linalg.det([own[0].normal, own[1].normal, row.normal])) - 0.1))
 
     def add(self, row, point):
         own = self.of_nodes.setdefault(row.index, [])
@@ -191,10 +196,13 @@ class Rows:
         if row.sticks:
             own[:] = [row]
             return
+        self.note_angles(row, own)
         if any(row.normal @ other.normal < -0.8 for other in own):
             return
         for k, other in enumerate(own):
             if row.normal @ other.normal > 0.999:
+                if np.abs(row.normal - other.normal).max() > 1e-9:
+                    self.diagnostics.note_touch((row.lack(point) - other.lack(point)) / self.diagonal)
                 if row.lack(point) > other.lack(point):
                     own[k] = row
                 return
@@ -210,12 +218,15 @@ class Rows:
 class FrameContact:
     """The colliders that a surface meets in the solve at a frame; `rest(a)` are its nodes at rest."""
 
-    def __init__(self, surface, colliders, frame, count, rest):
+    def __init__(self, surface, colliders, frame, count, rest, diagnostics):
         self.surface, self.frame, self.count, self.rest = surface, frame, count, rest
-        self.colliders = colliders
+        self.colliders, self.diagnostics = colliders, diagnostics
         world = Mixed(surface, frame, 0.0).to_world(rest(0.0)).reshape(-1, 3)
-        self.slack = 1e-9 * float(np.linalg.norm(world.ptp(axis=0)))
-        self.touched = 0
+        self.diagonal = float(np.linalg.norm(world.ptp(axis=0)))
+        self.slack = 1e-9 * self.diagonal
+
+    def note(self, length):
+        self.diagnostics.note_touch(length / self.diagonal)
 
     def poses(self, step):
         return [Pose(one, self.frame, step / self.count) for one in self.colliders]
@@ -237,6 +248,8 @@ class FrameContact:
                     continue
                 gap, _ = gap_and_normal(pose.kind, pose.lengths, pose.to_frame(point))
                 chosen[index] |= max(gap, 0.0) < radius
+                if gap > 0:
+                    self.note(gap - radius)
         return chosen
 
     @staticmethod
@@ -256,10 +269,11 @@ class FrameContact:
                 place, t = None, 0.0
                 if is_first and one.sticks:
                     gap, n = gap_and_normal(one.kind, one.lengths, x0)
+                    self.note(abs(gap) - 1e3 * self.slack)
                     if abs(gap) <= 1e3 * self.slack:
                         place = x0 - gap * n
                 if place is None:
-                    t = first_contact(one.kind, one.lengths, other.lengths, x0, x1, self.slack)
+                    t = first_contact(one.kind, one.lengths, other.lengths, x0, x1, self.slack, self.note)
                     if t is None:
                         continue
                     place = (1 - t) * x0 + t * x1
@@ -279,12 +293,16 @@ class FrameContact:
                                  other.rotation @ place + other.translate))
         return found
 
-    def step(self, number, w, free, interior, response, weights):
-        """The end of a step that ends in `free` without contact. `response(node, force)`: what a
-        force on a node moves, of A; None: nothing touches."""
+    def meets(self, number, w, end, interior):
+        """Whether anything touches in a step that ends there."""
+        return bool(self.touching(number, self.world(number, w), self.world(number + 1, end), interior, set(), True))
+
+    def step(self, number, w, free, interior, response, weights, flowing=None):
+        """The end of a step that ends in `free` without contact; None: nothing touches.
+        `response(node)`: what a force on a node moves, of A. `flowing(end)`: where a step of a plate
+        that yields ends without contact, if that flows which flows at `end`."""
         before, after = self.world(number, w), self.world(number + 1, free)
-        transform, joined, rows = self.transform(number + 1), set(), Rows()
-        world_free = after
+        joined, rows = set(), Rows(self.diagonal, self.diagnostics)
         found = self.touching(number, before, after, interior, joined, True)
         if not found:
             return None
@@ -297,14 +315,27 @@ class FrameContact:
             while True:
                 for row in found:
                     rows.add(row, after[row.index])
-                moved, forces = self.pushed(rows.all(), world_free, response, weights, pressures)
-                end = free + transform.vector_to_object(moved)
+                end, free, forces = self.pushed_and_flowed(number, rows.all(), free, response, weights, pressures,
+                                                           flowing)
                 after = self.world(number + 1, end)
                 found = self.touching(number, before, after, interior, joined, False)
                 if not found:
                     break
-        self.touched += 1
+        self.diagnostics.touches += 1
         return end
+
+    def pushed_and_flowed(self, number, rows, free, response, weights, pressures, flowing):
+        """The end of a step with these rows, its end without their forces but with all that flows, and the
+        forces. What flows answers to a change by at most 1/(1 + H) of it."""
+        for _ in range(5000):
+            moved, forces = self.pushed(rows, self.world(number + 1, free), response, weights, pressures)
+            end = free + self.transform(number + 1).vector_to_object(moved)
+            if flowing is None:
+                return end, free, forces
+            last, free = free, flowing(end)
+            if np.abs(free - last).max() <= 1e-13 * np.abs(end).max():
+                return end, last, forces
+        raise AssertionError("a plastic step with contact does not converge")
 
     @staticmethod
     def pushed(rows, free, response, weights, pressures):
@@ -361,37 +392,43 @@ def projected(inverse, normals, lacks, slips, bounds, sticks):
         forces, momentum = following, faster
         if np.abs(change).max() <= 1e-15 * np.abs(forces).max():
             break
+    else:
+        raise AssertionError("contact does not converge")
     return forces
 
 
-def with_contact(contact, euler, rigid, interior, weights, is_newmark):
-    """Steps that meet colliders. `euler(w, v, load, dt)` is one step of backward Euler, and
-    `rigid(load, dt)` what a load moves from rest where nothing is prescribed."""
-    def advance(w, velocity, load, count, dt):
+def with_contact(contact, euler, rigid, interior, weights, is_newmark, plastic=None):
+    """Steps that meet colliders. `euler(*state, load, dt)` is one step of backward Euler of w, velocity
+    and, if it yields, plastic curvatures, and `rigid(load, dt)` what a load moves from rest where nothing
+    is prescribed. `plastic(*state, load, dt)` gives two functions of where a step ends: `flowing` of
+    `FrameContact.step`, and the plastic curvatures."""
+    def advance(state, load, count, dt):
         responses = {}
 
         def response(node):
             if node not in responses:
-                unit = np.zeros_like(w)
+                unit = np.zeros_like(load)
                 unit[node] = 1, 0, 0
                 responses[node] = rigid(unit, dt)[..., 0]
             return responses[node]
 
         for number in range(count):
+            w = state[0]
             if is_newmark:
-                half, half_velocity = euler(w, velocity, load, dt / 2)
-                tried = 2 * half - w
-                if contact.step(number, w, tried, interior, response, weights) is None:
-                    w, velocity = tried, 2 * half_velocity - velocity
+                half = euler(*state, load, dt / 2)
+                tried = [2 * middle - before for middle, before in zip(half, state)]
+                if not contact.meets(number, w, tried[0], interior):
+                    state = tried
                     continue
-            free, speed = euler(w, velocity, load, dt)
-            end = contact.step(number, w, free, interior, response, weights)
+            free = euler(*state, load, dt)
+            flowing, flowed = plastic(*state, load, dt) if plastic else (None, None)
+            end = contact.step(number, w, free[0], interior, response, weights, flowing)
             if end is None:
-                w, velocity = free, speed
-            else:
-                velocity = (end - w) / dt
-                velocity[~interior] = 0
-                w = end
-        return w, velocity
+                state = free
+                continue
+            velocity = (end - w) / dt
+            velocity[~interior] = 0
+            state = [end, velocity] + ([flowed(end)] if plastic else [])
+        return state
 
     return advance

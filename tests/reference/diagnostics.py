@@ -56,6 +56,9 @@ class Diagnostics:
         self.time_margin = math.inf  # smallest |t - T| / T of an overshoot step
         self.settle_margin = math.inf  # smallest |motion - 1e-6 D| / (1e-6 D) of `recover`
         self.cut_margin = math.inf  # smallest distance of a cut of triangles from where it snaps
+        self.touch_margin = math.inf  # smallest length, of the diagonal, by which a node does or does not touch
+        self.row_margin = math.inf  # smallest distance of normals from where rows are left out
+        self.touches = 0  # steps in which something touches
         self.recovering = 0  # nodes counted as selected, over all frames
         self.stresses = {}  # the largest of each surface that may yield
         self.flows = 0  # solves in which something flows
@@ -87,6 +90,12 @@ class Diagnostics:
         for flow in flows:
             self.stresses[surface] = max(self.stresses.get(surface, 0.0), flow.largest)
         self.flows += bool(has_flowed)
+
+    def note_touch(self, margin):
+        self.touch_margin = min(self.touch_margin, abs(margin))
+
+    def note_rows(self, margin):
+        self.row_margin = min(self.row_margin, margin)
 
     def note_steps(self, frame_length, dt):
         ratio = frame_length / dt

@@ -79,13 +79,13 @@ class SurfaceRun:
                      and one.enabled(frame)[0] != 0]
         if not colliders:
             return None
-        assert self.surface.choices["reference"] == "rest" and not self.surface.yields
+        assert self.surface.choices["reference"] == "rest"
         length = self.surface.frame_length(frame, self.scene.fps)
         count, _ = steps_of_frame(length, self.surface.sample("dt", frame),
                                   self.surface.choices["stepping"])
         ends = [self.surface.grid.of_nodes(self.surface.shape.at(k)) for k in (frame, frame + 1)]
         return FrameContact(self.surface, colliders, frame, count,
-                            lambda a: (1 - a) * ends[0] + a * ends[1])
+                            lambda a: (1 - a) * ends[0] + a * ends[1], self.diagnostics)
 
     def select(self, frame, points, forces, groups, contact=None):
         """The deformation box of each force, None for none; of a group's forces, the group's."""

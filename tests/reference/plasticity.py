@@ -141,21 +141,49 @@ def plastic_step(flow, stiffness, known, density, damping, w, velocity, plastic,
     return x, (x - w) / dt, flow.flowed(x, plastic)
 
 
-def advance_plastic(bending, flow, w, velocity, plastic, load, density, damping, count, dt):
-    """`count` backward Euler steps of w and its velocity, M x N x 3, and of the plastic curvatures of
-    all nodes, with any numbers of dimensions."""
-    shape, form_of_plastic = bending.shape, plastic.shape
-    free, matrix = bending.is_free.ravel(), bending.matrix()
-    density, damping = ((np.broadcast_to(x, shape) * bending.area).ravel()[free]
-                        for x in (density, damping))
-    w, velocity = w.reshape(-1, 3).copy(), velocity.reshape(-1, 3).copy()
-    velocity[~free] = 0
-    known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
-    known = known[free] - matrix[free][:, ~free] @ w[~free]
-    part, inner = held(flow, free, w), matrix[free][:, free]
-    plastic = plastic.reshape(-1, 3, 3)
-    for _ in range(count):
-        w[free], velocity[free], plastic = plastic_step(
-            part, inner, known, density, damping, w[free], velocity[free], plastic, dt)
-    flow.largest = max(flow.largest, part.largest)
-    return w.reshape(*shape, 3), velocity.reshape(*shape, 3), plastic.reshape(form_of_plastic)
+class PlasticRegion:
+    """A region whose nodes are those of a `Bending`, under a load. Arrays are M x N x 3, and plastic curvatures
+    those of all nodes, with any numbers of dimensions."""
+
+    def __init__(self, bending, flow, w, load, density, damping):
+        self.shape, self.flow = bending.shape, flow
+        self.free, matrix = bending.is_free.ravel(), bending.matrix()
+        free = self.free
+        self.density, self.damping = ((np.broadcast_to(x, self.shape) * bending.area).ravel()[free]
+                                      for x in (density, damping))
+        w = w.reshape(-1, 3)
+        known = (bending.area[..., None] * load).reshape(-1, 3) + bending.slope_forces()
+        self.known = known[free] - matrix[free][:, ~free] @ w[~free]
+        self.part, self.inner = held(flow, free, w), matrix[free][:, free]
+
+    def advance(self, w, velocity, plastic, count, dt):
+        """`count` backward Euler steps."""
+        form_of_plastic, free = plastic.shape, self.free
+        w, velocity = w.reshape(-1, 3).copy(), velocity.reshape(-1, 3).copy()
+        velocity[~free] = 0
+        plastic = plastic.reshape(-1, 3, 3)
+        for _ in range(count):
+            w[free], velocity[free], plastic = plastic_step(
+                self.part, self.inner, self.known, self.density, self.damping, w[free], velocity[free], plastic, dt)
+        self.flow.largest = max(self.flow.largest, self.part.largest)
+        return w.reshape(*self.shape, 3), velocity.reshape(*self.shape, 3), plastic.reshape(form_of_plastic)
+
+    def with_flow_of(self, w, velocity, plastic, dt):
+        """Functions of where a step ends: where it would end under the load alone if that flows which flows there,
+        and the plastic curvatures."""
+        free, before = self.free, plastic.reshape(-1, 3, 3)
+        shift = self.density / dt**2 + self.damping / dt
+        factor = linalg.splu((self.inner + sparse.diags(shift)).tocsc())
+        start = w.reshape(-1, 3)
+        right = self.known + shift[:, None] * start[free] + (
+            self.density / dt)[:, None] * velocity.reshape(-1, 3)[free]
+
+        def flowed(end):
+            return self.part.flowed(end.reshape(-1, 3)[free], before)
+
+        def flowing(end):
+            x = start.copy()
+            x[free] = factor.solve(right + self.part.forces(flowed(end)))
+            return x.reshape(w.shape)
+
+        return flowing, lambda end: flowed(end).reshape(plastic.shape)

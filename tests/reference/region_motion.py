@@ -5,7 +5,7 @@ import numpy as np
 from bending import Bending, advance_bending
 from contact import with_contact
 from exact_motion import exact_motion
-from plasticity import advance_plastic, flow_of_nodes
+from plasticity import PlasticRegion, flow_of_nodes
 from regions import common_box
 from stencil import advance, advance_exactly, advance_union, union_operator
 from stepping import damping_of, slowest_vibration, with_integrator
@@ -53,41 +53,68 @@ class RegionMotion:
         matrix, _, _ = union_operator(self.interior, *self.spacing, self.material)
         return slowest_vibration(matrix, self.in_interior("density"))
 
-    def step_with_contact(self, w, velocity, load, integrator, count, dt, contact):
-        """Returns w and velocity after `count` steps that meet colliders."""
+    def whole(self, *parts):
+        """What the box has, on the whole grid."""
+        results = []
+        for part in parts:
+            results.append(np.zeros(self.interior.shape + part.shape[2:]))
+            results[-1][self.box] = part
+        return results
+
+    def plastic_region(self, w, load):
+        bending = self.bending(self.tangents)
+        self.flows.append(flow_of_nodes(bending, self.in_box("yield"), self.in_box("hardening")))
+        return PlasticRegion(bending, self.flows[-1], w[self.box], load[self.box], self.in_box("density"),
+                             self.in_box("damping"))
+
+    def step_with_contact(self, w, velocity, plastic, load, integrator, count, dt, contact):
+        """Returns the state after `count` steps that meet colliders."""
         still = {name: np.zeros(3) for name in self.tangents}
+        weights = np.ones(w.shape[:2])
         if not self.is_box:
             def euler(w, velocity, load, dt, tangents=None):
                 return advance_union(w, velocity, load, self.interior, self.ends, *self.spacing,
                                      self.material, tangents or self.tangents, 1, dt)
-            weights = np.ones(w.shape[:2])
         else:
             def euler(w, velocity, load, dt, tangents=None):
                 parts = [part[self.box] for part in (w, velocity, load)]
                 if self.surface.has_energy:
-                    after = advance_bending(self.bending(tangents or self.tangents), *parts,
-                                            self.in_box("density"), self.in_box("damping"), 1, dt)
-                else:
-                    after = advance(*parts, *self.spacing, self.material,
-                                    tangents or self.tangents, 1, dt)
-                results = [np.zeros_like(w), np.zeros_like(w)]
-                for result, part in zip(results, after):
-                    result[self.box] = part
-                return results
-            weights = np.ones(w.shape[:2])
+                    return self.whole(*advance_bending(
+                        self.bending(tangents or self.tangents), *parts, self.in_box("density"),
+                        self.in_box("damping"), 1, dt))
+                return self.whole(*advance(*parts, *self.spacing, self.material, tangents or self.tangents, 1, dt))
             if self.surface.has_energy:
                 weights[self.box] = self.bending(still).area
         still_plate = np.zeros_like(w)
         is_newmark = integrator == "newmark" and np.any(self.material["density"] > 0)
-        steps = with_contact(contact, euler,
-                             lambda load, dt: euler(still_plate, still_plate, load, dt, still)[0],
-                             self.interior, weights, is_newmark)
-        return steps(w, velocity, load, count, dt)
+
+        def rigid(load, dt):
+            return euler(still_plate, still_plate, load, dt, still)[0]
+
+        if not self.surface.yields:
+            steps = with_contact(contact, euler, rigid, self.interior, weights, is_newmark)
+            return *steps([w, velocity], load, count, dt), plastic
+        region = self.plastic_region(w, load)
+
+        def plastic_euler(w, velocity, plastic, _, dt):
+            return self.whole(*region.advance(w[self.box], velocity[self.box], plastic[self.box], 1, dt))
+
+        def flow_of(w, velocity, plastic, _, dt):
+            flowing, flowed = region.with_flow_of(w[self.box], velocity[self.box], plastic[self.box], dt)
+            return (lambda end: self.whole(flowing(end[self.box]))[0],
+                    lambda end: self.whole(flowed(end[self.box]))[0])
+
+        steps = with_contact(contact, plastic_euler, rigid, self.interior, weights, is_newmark, flow_of)
+        start = self.whole(plastic[self.box])[0]
+        w, velocity, now = steps([w, velocity, start], load, count, dt)
+        after = plastic.copy()
+        after[self.box] = now[self.box]
+        return w, velocity, after
 
     def step(self, w, velocity, plastic, load, integrator, count, dt, contact=None):
         """Returns w, velocity and the plastic curvatures after `count` steps."""
         if contact:
-            return *self.step_with_contact(w, velocity, load, integrator, count, dt, contact), plastic
+            return self.step_with_contact(w, velocity, plastic, load, integrator, count, dt, contact)
         if not self.is_box:
             steps = with_integrator(integrator, self.material["density"], advance_union)
             w, velocity = steps(w, velocity, load, self.interior, self.ends, *self.spacing,
@@ -95,14 +122,11 @@ class RegionMotion:
             return w, velocity, plastic
         state, others = [w[self.box], velocity[self.box]], [load[self.box]]
         if self.surface.yields:
-            bending = self.bending(self.tangents)
-            flow = flow_of_nodes(bending, self.in_box("yield"), self.in_box("hardening"))
             state.append(plastic[self.box])
-            self.flows.append(flow)
+            region = self.plastic_region(w, load)
 
-            def euler(w, velocity, plastic, *rest):
-                return advance_plastic(bending, flow, w, velocity, plastic, *rest)
-            others += [self.in_box("density"), self.in_box("damping")]
+            def euler(w, velocity, plastic, _, count, dt):
+                return region.advance(w, velocity, plastic, count, dt)
         elif self.surface.has_energy:
             bending = self.bending(self.tangents)
 

@@ -1,8 +1,9 @@
 """Decides whether two good implementations must agree on a scene.
 
 No selection distance within rounding of a radius (exact ties on representable lattices excepted),
-no direction from a point that almost equals the node, no curve sampled at a vertical tangent, and a
-run that does not amplify noise of 1e-12 to near the tolerance of the comparison.
+no node that touches within rounding, no direction from a point that almost equals the node, no curve
+sampled at a vertical tangent, and a run that does not amplify noise of 1e-12 to near the tolerance of
+the comparison.
 """
 
 import numpy as np
@@ -17,7 +18,7 @@ def curves_of(scene):
     """Every animated channel of a scene."""
     owners = [surface.channels for surface in scene.surfaces]
     forces = scene.forces + [force for group in scene.groups for force in group.forces]
-    owners += [force.channels for force in forces]
+    owners += [item.channels for item in forces + scene.colliders]
     channels = [channel for owner in owners for channel in owner.values()]
     channels += [group.center for group in scene.groups]
     channels += [force.falloff for force in forces]
@@ -41,6 +42,8 @@ def trouble_of(path):
         return "a node that settles within rounding", relative, diagnostics, results
     if diagnostics.time_margin < 1e-9:
         return "a step that ends with the frame", relative, diagnostics, results
+    if diagnostics.touch_margin < 1e-11 or diagnostics.row_margin < 1e-8:
+        return "a touch within rounding", relative, diagnostics, results
     for curve in curves_of(scene):
         scale = max(np.abs(key.value).max() for key in curve.keys)
         if any(segment.sensitivity > 1e-12 * scale for segment in curve.segments):
