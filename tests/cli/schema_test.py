@@ -28,7 +28,7 @@ UNSAID = {
     "the same name twice in a list": r"is given twice",
     "the first and third number of control": r"x1 and x2 must be",
     "how large a surface may be": r"needs [\d.]+ [GT]B|at most \d+ are allowed",
-    "what is in files": r"\.obj|\.png|\.npy|cannot read",
+    "what is in files": r"\.obj|\.png|\.npy|cannot read|no node is above",
     "rules between values, attributes and elements":
         r"is already (animated|given)|has both|remove one of them|applies only to|needs control|must be (before|after)|"
         r"comes before|greater than -2|must be at most \d+ frames|frames|degree|has no such position|repeats the key|"

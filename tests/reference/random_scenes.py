@@ -153,6 +153,11 @@ class SceneMaker(ForceMaker, MaterialMaker):
                 if shape in line:
                     lines[k] = line.replace("/>", f' cache="{file}" cacheStart="{first!r}"/>')
 
+    def colliders(self, worlds, names):
+        """Lines of colliders near the surfaces."""
+        del worlds, names
+        return []
+
     def make(self):
         """Returns a function of a magnitude factor that gives the scene's text."""
         rng = self.rng
@@ -190,6 +195,7 @@ class SceneMaker(ForceMaker, MaterialMaker):
                                self.chance(0.3)]
                 maker = self.group if self.chance(0.1) else self.force
                 lines += maker(k, world, spacing, load_scale, targets)
+            lines += self.colliders(worlds, names)
             return "\n".join(lines + ["</scene>"]) + "\n"
 
         return text

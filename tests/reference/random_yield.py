@@ -35,6 +35,7 @@ class YieldMaker(ChannelMaker):
     """Draws `yield` and `hardening`."""
 
     yield_share = 0.3  # of the surfaces that may
+    least_hardening = 0.0
 
     def yields(self, solver, surface, is_static):
         """Channels for a part of the surfaces that may yield; draws nothing from the scene's
@@ -51,8 +52,9 @@ class YieldMaker(ChannelMaker):
         else:
             channel.animate = [re.sub('value="([^"]*)"', lambda found: f'value="{mark(found[1])}"',
                                       line) for line in channel.animate]
-        hardening = self.channel("hardening", lambda: 10 ** self.rng.uniform(-2, 0.3), 0.25)
-        if rng.random() < 0.15 and not is_static:
+        hardening = self.channel("hardening", lambda: 10 ** self.rng.uniform(
+            np.log10(max(0.01, self.least_hardening)), 0.3), 0.25)
+        if rng.random() < 0.15 and not is_static and self.least_hardening == 0:
             hardening = Channel("hardening", "0")
             self.tags.add("no hardening")
         return [channel] + ([hardening] if rng.random() < 0.7 else [])

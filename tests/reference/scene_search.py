@@ -103,6 +103,8 @@ def note_run(tags, diagnostics):
         tags.add("ran: recovering nodes")
     if diagnostics.flows:
         tags.add("ran: flow")
+    if diagnostics.touches:
+        tags.add("ran: contact")
     if diagnostics.unions:
         tags.add("ran: a union that is no box")
     if diagnostics.exact_ties:
