@@ -105,22 +105,34 @@ def first_contact_with_mesh(mesh, before, after, x0, x1, slack, note):
                + np.linalg.norm(points_of(change), axis=1).max())
     if least_gap(mesh, before, x0) > fastest or gap(0.0) > fastest:
         return None
-    first, t, before_it, lowest = None, 0.0, 0.0, np.inf
+
+    def entry(outside, inside):
+        for _ in range(60):
+            middle = (outside + inside) / 2
+            outside, inside = (middle, inside) if gap(middle) > 0 else (outside, middle)
+        return inside
+
+    first, t, lowest = None, 0.0, np.inf
+    trail = []  # the last two moments and their gaps
     while True:
         now = gap(t)
         lowest = min(lowest, now)
+        if len(trail) == 2 and min(trail[0][1], now) - trail[1][1] > 1e-3 * slack:
+            # Between such moments it may be lower still.
+            deepest = least(gap, trail[0][0], t)
+            lowest = min(lowest, gap(deepest))
+            if gap(deepest) < -slack:
+                note(lowest + slack)
+                return first if first is not None else entry(trail[deepest > trail[1][0]][0], deepest)
         if now <= 0 and first is None:
-            low, high = before_it, t
-            for _ in range(60 if t > 0 else 0):
-                middle = (low + high) / 2
-                low, high = (middle, high) if gap(middle) > 0 else (low, middle)
-            first = high
+            first = entry(trail[-1][0], t) if trail else 0.0
         if now < -slack or t >= 1:
             note(lowest + slack)
             return first if now < -slack else None
         if now > 0:
             first = None
-        before_it, t = t, min(1.0, t + max(abs(now) / fastest if fastest > 0 else 1.0, 1 / 400))
+        trail = trail[-1:] + [(t, now)]
+        t = min(1.0, t + max(abs(now) / fastest if fastest > 0 else 1.0, 1 / 4000))
 
 
 def support(kind, lengths, n):
@@ -155,13 +167,13 @@ def first_contact(kind, before, after, x0, x1, slack, note):
     return high
 
 
-def least(gap):
-    """Where a convex function on [0, 1] is least."""
-    low, high = 0.0, 1.0
+def least(gap, begin=0.0, end=1.0):
+    """Where a convex function is least between two places."""
+    low, high = begin, end
     for _ in range(45):
         one, other = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
         low, high = (low, other) if gap(one) < gap(other) else (one, high)
-    return min((0.0, low, high, 1.0), key=gap)
+    return min((begin, low, high, end), key=gap)
 
 
 class Row:
