@@ -17,12 +17,13 @@ NAME = sys.argv[3]
 sys.path.append(EXAMPLES)
 
 
-def bake():
-    """The vertices of the surface at all frames, and for each collider its forces and numbers of nodes."""
+def bake(*changes):
+    """The displacements of the surface's vertices at all frames, and for each collider its forces and numbers of nodes;
+    with `changes` as those of --set."""
     with tempfile.TemporaryDirectory() as folder:
         out, report = os.path.join(folder, "a.npy"), os.path.join(folder, "a.json")
         subprocess.run([PLIANT, "bake", os.path.join(EXAMPLES, NAME + ".xml"), "-o", out, "--regions", report,
-                        "--quiet"], check=True)
+                        "--quiet", *(text for change in changes for text in ("--set", change))], check=True)
         with open(report, encoding="utf-8") as file:
             frames = [frame["surfaces"][0]["contacts"] for frame in json.load(file)["frames"]]
         names = [contact["collider"] for contact in max(frames, key=len)]
@@ -30,7 +31,8 @@ def bake():
         force = {name: np.array([frame[name]["force"] if name in frame else (0, 0, 0) for frame in at])
                  for name in names}
         nodes = {name: np.array([frame[name]["nodes"] if name in frame else 0 for frame in at]) for name in names}
-        return np.load(out), force, nodes
+        places = np.load(out)
+        return places - places[0], force, nodes
 
 
 def runs(is_on):
@@ -67,5 +69,46 @@ def trampoline():
         assert np.linalg.norm(gained - given) < 0.1 * np.linalg.norm(gained), (begin + 1, gained, given)
 
 
-{"trampoline": trampoline}[NAME]()
+def size(moved):
+    """The largest displacement at each frame."""
+    return np.linalg.norm(moved, axis=2).max(axis=1)
+
+
+def pillow():
+    moved, _, nodes = bake()
+    (begin, end), = runs(nodes["head"] > 0)
+    down, aside = -moved[:, :, 1].min(axis=1), moved[:, :, 0].max(axis=1)
+    assert down[23] > 0.6 and size(moved).argmax() <= end
+    # Straight down, then to the side where the head turns; the cloth goes along because of the friction.
+    assert aside[begin:23].max() < 0.1 * aside[39]
+    slides, _, _ = bake("head.friction=0")
+    assert slides[39, :, 0].max() < 0.5 * aside[39]
+    assert (np.diff(size(moved)[end:]) < 0).all() and size(moved)[-1] < 0.02 * down[23], "it does not rise again"
+
+
+def stroke():
+    moved, _, nodes = bake()
+    fingers = ("index", "middle", "ring")
+    touches = sum(nodes[name] for name in fingers) > 0
+    (begin, end), = runs(touches)
+    assert not nodes["palm"].any() and not nodes["thumb"].any()
+    slides, _, _ = bake(*(f"{name}.friction=0" for name in nodes))
+    down = -moved[:, :, 1].min(axis=1)
+    assert down.max() > 2 * -slides[:, :, 1].min(), "friction does not drag the skin"
+    assert begin < down.argmax() <= end
+    assert size(moved)[-1] < 0.05 * size(moved).max(), "it does not spring back"
+
+
+def press():
+    moved, _, nodes = bake()
+    light, deep = runs(nodes["punch"] > 0)
+    peak = [size(moved)[begin:end + 1].max() for begin, end in (light, deep)]
+    assert size(moved)[deep[0] - 1] < 1e-3 * peak[0], "the light stroke leaves a dent"
+    left = size(moved)[-1]
+    assert 0.2 * peak[1] < left < 0.6 * peak[1], (left, peak)
+    # Nothing swings any more: it is bent.
+    assert abs(size(moved)[-6:] - left).max() < 1e-3 * left
+
+
+{"trampoline": trampoline, "pillow": pillow, "stroke": stroke, "press": press}[NAME]()
 print("ok", NAME)
