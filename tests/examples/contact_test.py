@@ -110,5 +110,19 @@ def press():
     assert abs(size(moved)[-6:] - left).max() < 1e-3 * left
 
 
-{"trampoline": trampoline, "pillow": pillow, "stroke": stroke, "press": press}[NAME]()
+def sticky():
+    moved, _, nodes = bake()
+    (begin, end), = runs(nodes["finger"] > 0)
+    assert end == 39, "it sticks until frame 40"
+    curve = subprocess.run([PLIANT, "curves", os.path.join(EXAMPLES, NAME + ".xml"), "--channel", "finger.translate"],
+                           check=True, capture_output=True, text=True).stdout
+    finger = np.array([[float(x) for x in line.split(",")[2:]] for line in curve.splitlines()[1:]])
+    follows = np.diff(moved[19:end + 1], axis=0) - np.diff(finger[19:end + 1], axis=0)[:, None]
+    held = abs(follows).max(axis=(0, 2)) < 1e-6
+    assert held.sum() > 10, "nothing goes with the finger"
+    assert moved[:begin + 8, :, 1].max() < 0.1, "the sheet climbs the finger"
+    assert moved[end, held, 1].min() > 1.5 and size(moved)[end + 12:].max() < 0.5 * size(moved)[end]
+
+
+{"trampoline": trampoline, "pillow": pillow, "stroke": stroke, "press": press, "sticky": sticky}[NAME]()
 print("ok", NAME)
