@@ -22,45 +22,50 @@ def place(i, j, side):
     return WIDTH / 2 * x * (1 - 0.06 * (1 - z * z)), side * height, WIDTH / 2 * z * (1 - 0.06 * (1 - x * x))
 
 
-def cushion():
-    vertices, stitched, faces, numbers = [], [], [], {}
+def is_button(i, j):
+    return any(abs(i - a) + abs(j - b) <= 1 for a in BUTTONS for b in BUTTONS)
+
+
+def sewn(columns, rows, place, is_marked):
+    """Two sides of quads, sewn together at their rims: vertices, faces, and 1 for each vertex at the seam or
+    where `is_marked` of its column, row and side, 1 or -1. `place` has side 0 at the seam."""
+    vertices, marks, faces, numbers = [], [], [], {}
 
     def at(i, j, side):
-        is_seam = i in (0, CELLS) or j in (0, CELLS)
+        is_seam = i in (0, columns) or j in (0, rows)
         key = i, j, 0 if is_seam else side
         if key not in numbers:
             numbers[key] = len(vertices)
-            vertices.append(place(i, j, 0 if is_seam else side))
-            is_button = any(abs(i - a) + abs(j - b) <= 1 for a in BUTTONS for b in BUTTONS)
-            stitched.append(int(is_seam or is_button))
+            vertices.append(place(*key))
+            marks.append(int(is_seam or is_marked(i, j, side)))
         return numbers[key]
 
     for side in (1, -1):
-        for j in range(CELLS):
-            for i in range(CELLS):
+        for j in range(rows):
+            for i in range(columns):
                 corners = (i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j)
                 faces.append([at(*corner, side) for corner in corners[::side]])
-    return vertices, stitched, faces
+    return vertices, faces, marks
 
 
-def write(out):
-    vertices, stitched, faces = cushion()
-    with out.open("w", encoding="utf-8") as file:
-        file.write("ply\nformat ascii 1.0\ncomment made by make_buttons.py\n"
+def write(script, description, name, mesh):
+    """Writes vertices, faces and marks, as the property `name`, to the file after -o; without it to NAME.ply
+    beside the script make_NAME.py."""
+    script = pathlib.Path(script)
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("-o", "--out", type=pathlib.Path,
+                        default=script.with_name(script.stem.removeprefix("make_") + ".ply"))
+    vertices, faces, marks = mesh
+    with parser.parse_args().out.open("w", encoding="utf-8") as file:
+        file.write(f"ply\nformat ascii 1.0\ncomment made by {script.name}\n"
                    f"element vertex {len(vertices)}\n"
-                   "property double x\nproperty double y\nproperty double z\nproperty uchar stitched\n"
+                   f"property double x\nproperty double y\nproperty double z\nproperty uchar {name}\n"
                    f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
-        for (x, y, z), value in zip(vertices, stitched):
-            file.write(f"{x:.5f} {y:.5f} {z:.5f} {value}\n")
+        for (x, y, z), mark in zip(vertices, marks):
+            file.write(f"{x:.5f} {y:.5f} {z:.5f} {mark}\n")
         for face in faces:
             file.write(f"{len(face)} {' '.join(map(str, face))}\n")
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--out", type=pathlib.Path, default=pathlib.Path(__file__).with_name("buttons.ply"))
-    write(parser.parse_args().out)
-
-
 if __name__ == "__main__":
-    main()
+    write(__file__, __doc__, "stitched", sewn(CELLS, CELLS, place, lambda i, j, side: is_button(i, j)))
