@@ -10,6 +10,7 @@
 
 #include "pliant/body/cycle.hpp"
 #include "pliant/body/step_facts.hpp"
+#include "pliant/sampling/targets.hpp"
 
 namespace pliant {
 namespace {
@@ -18,14 +19,13 @@ constexpr double shared_nodes = 1e8;  // solved for shares, per preview
 
 // The colliders that target a surface and are not disabled at all frames.
 std::vector<std::size_t> colliders_of(const Scene& scene, const Surface& surface) {
-  std::vector<std::size_t> found;
-  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
-    const Collider& one = scene.colliders[k];
-    const bool is_off = !one.enabled.is_animated() && !one.enabled.at(scene.start);
-    const bool is_target =
-        one.targets.empty() || std::ranges::find(one.targets, surface.name) != one.targets.end();
-    if (is_target && !is_off) found.push_back(k);
-  }
+  const auto place = std::ranges::find(scene.surfaces, surface.name, &Surface::name);
+  std::vector<std::size_t> found =
+      targets_of(scene)[static_cast<std::size_t>(place - scene.surfaces.begin())].colliders;
+  std::erase_if(found, [&](std::size_t k) {
+    const auto& enabled = scene.colliders[k].enabled;
+    return !enabled.is_animated() && !enabled.at(scene.start);
+  });
   return found;
 }
 
