@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <iterator>
 #include <limits>
 #include <optional>
@@ -15,79 +14,13 @@
 #include "pliant/core/anderson_mixing.hpp"
 #include "pliant/core/expects.hpp"
 #include "pliant/plate/energy/flowing_places.hpp"
+#include "pliant/plate/energy/secants.hpp"
 #include "pliant/plate/kernels/kernels.hpp"
 
 namespace pliant {
 namespace {
 
 using Numbers = std::vector<double>;
-
-double dot(const PlateKernels& kernels, const Numbers& a, const Numbers& b) {
-  return kernels.dot_product(static_cast<long>(a.size()), a.data(), b.data());
-}
-void add(const PlateKernels& kernels, Numbers& to, double part, const Numbers& of) {
-  kernels.add_scaled(static_cast<long>(to.size()), to.data(), part, of.data());
-}
-
-// What a convex energy's gradient did on the last ways that were gone, by which the next way is
-// better than the one that the elastic matrix A gives: the method of Broyden, Fletcher, Goldfarb
-// and Shanno with limited memory. Source: Nocedal & Wright, Numerical Optimization (2006),
-// algorithm 7.4. Numbers are so many that vectors divide them.
-class Secants {
- public:
-  Secants(const PlateKernels& kernels, std::size_t most) : kernels_(kernels), most_(most) {}
-
-  void clear() { secants_.clear(); }
-
-  // A way that was gone, with A times it, and what it changed of the gradient. Leaves other numbers
-  // there, as many or none.
-  void learn(Numbers& way, Numbers& product, Numbers& change) {
-    const double curvature = dot(kernels_, way, change);
-    // Rounding may leave nothing to learn.
-    if (!(curvature > 1e-4 * dot(kernels_, way, product))) return;
-    Secant next;
-    if (secants_.size() == most_) {
-      next = std::move(secants_.front());
-      secants_.pop_front();
-    }
-    next.way.swap(way);
-    next.product.swap(product);
-    next.change.swap(change);
-    next.curvature = curvature;
-    secants_.push_back(std::move(next));
-  }
-
-  // A way down for a gradient: first what A has to be solved for, in its place, then the way and A
-  // times it for that solution.
-  void to_solve(Numbers& gradient) {
-    parts_.resize(secants_.size());
-    for (std::size_t k = secants_.size(); k-- > 0;) {
-      const Secant& one = secants_[k];
-      parts_[k] = dot(kernels_, one.way, gradient) / one.curvature;
-      add(kernels_, gradient, -parts_[k], one.change);
-    }
-  }
-
-  void finish(Numbers& way, Numbers& product) const {
-    for (std::size_t k = 0; k < secants_.size(); ++k) {
-      const Secant& one = secants_[k];
-      const double part = parts_[k] - dot(kernels_, one.change, way) / one.curvature;
-      add(kernels_, way, part, one.way);
-      add(kernels_, product, part, one.product);
-    }
-  }
-
- private:
-  struct Secant {
-    Numbers way, product, change;
-    double curvature = 0;  // way . change
-  };
-
-  const PlateKernels& kernels_;
-  std::size_t most_;
-  std::deque<Secant> secants_;
-  std::vector<double> parts_;  // of each, in the last `to_solve`
-};
 
 // How short the last way is, as a part of the peak: conjugate gradients leave
 // (sqrt(condition) - 1)/2 of it, which is 1e-9 at most, and the solve that follows less.
