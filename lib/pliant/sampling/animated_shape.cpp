@@ -202,38 +202,38 @@ std::size_t AnimatedShape::bytes(std::size_t vertex_count, int sample_count) {
   return fields * row * vertex_count + static_cast<std::size_t>(sample_count) * 3 * sizeof(double);
 }
 
-Result<void> animate(RestShape& shape, MemoryShare& memory, const ShapeCache& of,
-                     const Scene& scene, const RunContext& context) {
+Result<void> animate(RestShape& shape, MemoryShare& memory, const CacheUse& use, const Scene& scene,
+                     const RunContext& context) {
   const auto located = [&](Error error) {
     if (error.code == ErrorCode::Unreadable)
       return fail(
-          scene.origin.located({.code = error.code, .message = unreadable_mesh(error, of.title)},
-                               scene.origin.at(of.name, "cache")));
+          scene.origin.located({.code = error.code, .message = unreadable_mesh(error, use.title)},
+                               scene.origin.at(use.name, "cache")));
     if (error.code == ErrorCode::Interrupted) return fail(std::move(error));
     const std::string part = error.file.empty() ? "" : fmt::format("cache {}: ", error.file);
-    error.message = fmt::format("{}: {}{}", of.title, part, error.message);
-    return fail(scene.origin.located(std::move(error), scene.origin.at(of.name, "cache")));
+    error.message = fmt::format("{}: {}{}", use.title, part, error.message);
+    return fail(scene.origin.located(std::move(error), scene.origin.at(use.name, "cache")));
   };
-  auto cache = PointCache::open(of.file.path, scene.origin.root);
+  auto cache = PointCache::open(use.cache.path, scene.origin.root);
   if (!cache) return located(cache.error());
   const auto vertices = std::ssize(shape.cache_nodes());
   if (cache->vertex_count() != vertices) {
     return located({.message = fmt::format("it has {} vertices, but the shape has {}",
                                            cache->vertex_count(), vertices),
-                    .file = of.file.path});
+                    .file = use.cache.path});
   }
   const std::size_t bytes =
-      memory.bytes() + of.bytes +
+      memory.bytes() + use.bytes +
       AnimatedShape::bytes(static_cast<std::size_t>(vertices), cache->sample_count());
   if (!memory.try_resize(bytes)) {
     return located({.code = ErrorCode::OutOfMemory,
                     .message = "its animated shape " + memory.complaint(bytes)});
   }
-  auto frames = cache->frames(of.file.first, scene.start, scene.fps);
+  auto frames = cache->frames(use.cache.first, scene.start, scene.fps);
   if (!frames) return located(frames.error());
-  auto animation =
-      std::make_shared<const AnimatedShape>(*std::move(cache), *std::move(frames), shape, of.cycle);
-  if (auto sound = animation->check(of.used.first, of.used.last, context); !sound)
+  auto animation = std::make_shared<const AnimatedShape>(*std::move(cache), *std::move(frames),
+                                                         shape, use.cycle);
+  if (auto sound = animation->check(use.used.first, use.used.last, context); !sound)
     return located(sound.error());
   shape.animation = std::move(animation);
   return {};
@@ -243,15 +243,15 @@ Result<void> animate(ReservedShape& made, const Surface& surface, const Scene& s
                      const RunContext& context) {
   PLIANT_EXPECTS(surface.is_animated());
   const FrameSpan used = sampled_frames(scene, surface);
-  ShapeCache cache{.title = fmt::format("surface \"{}\"", surface.name),
-                   .name = surface.name,
-                   .file = surface.cache,
-                   .used = {used.first - 1, used.last + 1}};
+  CacheUse use{.title = fmt::format("surface \"{}\"", surface.name),
+               .name = surface.name,
+               .cache = surface.cache,
+               .used = {used.first - 1, used.last + 1}};
   if (surface.solver.loop)
-    cache.cycle = ShapeCycle{first_solved_frame(scene, surface), *surface.solver.loop};
+    use.cycle = ShapeCycle{first_solved_frame(scene, surface), *surface.solver.loop};
   // A step on triangles places a copy of them.
-  if (made.shape.surface) cache.bytes = bytes_as_surface(made.shape.mesh);
-  return animate(made.shape, made.memory, cache, scene, context);
+  if (made.shape.surface) use.bytes = bytes_as_surface(made.shape.mesh);
+  return animate(made.shape, made.memory, use, scene, context);
 }
 
 }  // namespace pliant

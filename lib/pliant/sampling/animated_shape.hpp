@@ -100,11 +100,11 @@ class AnimatedShape {
   mutable FieldCache samples_, vertices_, node_shapes_;
 };
 
-/// A cache that moves a shape.
-struct ShapeCache {
+/// What a cache moves, and when.
+struct CacheUse {
   std::string title = {};  ///< of what has the shape: `surface "sheet"`
   std::string name = {};   ///< of that
-  CacheFile file = {};
+  ShapeCache cache = {};
   FrameSpan used = {};  ///< the frames at which it is read
   std::optional<ShapeCycle> cycle = {};
   std::size_t bytes = 0;  ///< that the shape takes besides if it moves
@@ -112,8 +112,8 @@ struct ShapeCache {
 
 /// Opens a cache for a shape, checks the samples of the frames, and reserves the memory for it.
 /// Errors: as below.
-Result<void> animate(RestShape& shape, MemoryShare& memory, const ShapeCache& cache,
-                     const Scene& scene, const RunContext& context);
+Result<void> animate(RestShape& shape, MemoryShare& memory, const CacheUse& use, const Scene& scene,
+                     const RunContext& context);
 
 /// Opens the cache of an animated surface for its shape, checks the samples of the scene's frames,
 /// and reserves the memory for it. Errors, with the line of the attribute: those of `PointCache`

@@ -108,7 +108,7 @@ class ColliderMeshReader {
 // All that the mesh of a collider is made from, besides its files.
 struct MeshValues {
   std::string name, root, path, object, mesh_root;
-  CacheFile cache;
+  ShapeCache cache;
   bool is_scaled;  // by a channel that is animated
   std::size_t surfaces;
   double fps;
@@ -235,7 +235,7 @@ Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& c
   if (const auto edge = SolidMesh::open_edge(made->faces_.triangles))
     return fail(reader.open(*mesh, *surface, *edge));
 
-  const CacheFile& cache = std::get<ClosedMesh>(collider.shape).cache;
+  const ShapeCache& cache = std::get<ClosedMesh>(collider.shape).cache;
   const bool moves = !cache.path.empty() || collider.transform.scale.is_animated();
   const std::size_t poses = 2 + (moves ? most_poses + poses_of_surface * surfaces : 0);
   const std::size_t kept = SolidMesh::bytes(made->faces_.triangles.size(),
@@ -256,7 +256,7 @@ Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& c
   auto moved = animate(shape, memory,
                        {.title = reader.title(),
                         .name = collider.name,
-                        .file = cache,
+                        .cache = cache,
                         .used = {used.first, used.last + 1}},
                        scene, context);
   if (!moved) return fail(moved.error());

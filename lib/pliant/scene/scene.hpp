@@ -41,12 +41,12 @@ struct MeshFile {
 };
 
 /// An animation of a surface's rest shape, or of a collider's mesh, in a file: .pc2, .mdd or .npy.
-struct CacheFile {
+struct ShapeCache {
   std::string path = {};             ///< as passed to open; empty: the shape stays as it is
   std::optional<double> first = {};  ///< the frame of its first sample; none: that of a .pc2
                                      ///< itself, else the scene's start
 
-  friend bool operator==(const CacheFile&, const CacheFile&) = default;
+  friend bool operator==(const ShapeCache&, const ShapeCache&) = default;
 };
 
 /// The source of a surface's rest shape; a `Mesh` is made by a program.
@@ -166,7 +166,7 @@ struct Surface {
   SurfaceShape shape = {};                      ///< by default a `GridSheet`
   MeshReading reading = {};                     ///< of a sheet, or of a shape that is a mesh
   std::optional<Subdivision> subdivision = {};  ///< of a shape that is a mesh: it is a cage
-  CacheFile cache = {};                         ///< of a sheet, or of a shape that is a mesh
+  ShapeCache cache = {};                        ///< of a sheet, or of a shape that is a mesh
   TransformChannels transform = {};
   MaterialChannels material = {};
   std::vector<MaterialMap> maps = {};  ///< at most one of each channel
@@ -347,8 +347,8 @@ struct PlaneChannels {
 /// What a closed mesh in a file encloses: each edge has two faces, which run through it in opposite
 /// directions. It is turned outwards by its volume.
 struct ClosedMesh {
-  MeshFile mesh = {};    ///< without a set of UVs
-  CacheFile cache = {};  ///< of its vertices
+  MeshFile mesh = {};     ///< without a set of UVs
+  ShapeCache cache = {};  ///< of its vertices
 
   friend bool operator==(const ClosedMesh&, const ClosedMesh&) = default;
 };

@@ -229,7 +229,7 @@ class WholeChecker {
   }
 
   // Of a shape that no cache moves.
-  void check_start(const std::string& name, const CacheFile& cache) {
+  void check_start(const std::string& name, const ShapeCache& cache) {
     if (cache.first && is_sound(name, "cache"))
       complain(name, "cacheStart", fmt::format("{}.cacheStart is given, but no cache", name));
   }

@@ -84,7 +84,7 @@ struct Description<MeshFile> {
 
 /// The attributes of a sheet or a mesh that animate its shape.
 template <>
-struct Description<CacheFile> {
+struct Description<ShapeCache> {
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
     row(Attribute{.name = "cache",
