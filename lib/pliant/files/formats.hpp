@@ -18,7 +18,7 @@ Result<std::unique_ptr<SurfaceWriter>> make_obj_writer(const SurfacePlan& plan);
 /// position, and the faces as in the source mesh. With `float nx ny nz` if the mesh defines which
 /// corners share a normal and each vertex has only one. With `double s t` if each vertex has only
 /// one (u,v) over all its corners; otherwise each face has a list `texcoord` of u v u v …, which
-/// fewer programs support. PLY cannot store materials and groups.
+/// fewer programs support. PLY cannot store materials and groups. Written by `PlyBytes`.
 Result<std::unique_ptr<SurfaceWriter>> make_ply_writer(const SurfacePlan& plan);
 
 // Point caches contain only positions, in single precision, so each comes with the mesh that they

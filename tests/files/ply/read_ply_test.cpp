@@ -122,6 +122,45 @@ TEST_CASE("(u,v) of corners go before those of vertices", "[mesh][read_ply]") {
             ->corner_uvs == std::vector{-1, -1, -1, 0, 1, 2});
 }
 
+TEST_CASE("numbered (u,v) and normals go before all others", "[mesh][read_ply]") {
+  const std::string numbered =
+      "element texcoord 2\nproperty double u\nproperty double v\nelement face 2\n"
+      "property list uchar int vertex_indices\nproperty list uchar int texcoord_indices\n"
+      "property list uchar int normal_indices\nproperty list uchar float texcoord\n";
+  const std::string uvs = "7 8\n9 10\n", unread = " 6 5 5 5 5 5 5\n";
+  const auto read = [&](const std::string& faces, const std::string& more = "",
+                        const std::string& strips = "") {
+    return parse_ply(header(with_uvs + numbered + strips) + points_with_uvs + uvs + faces + more,
+                     "m.ply")
+        .value();
+  };
+  const Mesh mesh = read("3 0 1 2 3 1 0 -1 3 4 4 2" + unread + "3 0 2 3 3 1 1 1 3 4 9 2" + unread);
+  CHECK(mesh.uvs == std::vector<std::array<double, 2>>{{7, 8}, {9, 10}});
+  CHECK(mesh.corner_uvs == std::vector{1, 0, -1, 1, 1, 1});
+  CHECK(mesh.corner_normals == std::vector{0, 0, 1, 0, 2, 1});
+  CHECK(mesh.left_out.empty());
+  // Without a list corners have no (u,v), and share the normals of their vertices.
+  const Mesh bad = read("3 0 1 2 3 2 0 -2 3 4 nan 2" + unread + "3 0 2 3 2 1 1 1 4" + unread);
+  CHECK(bad.corner_uvs == std::vector{-1, 0, -1, -1, -1, -1});
+  CHECK(bad.corner_normals == std::vector{0, 1, 2, 3, 4, 5});
+  CHECK_THAT(bad.left_out,
+             Contains("2 numbers of texture coordinates that are out of range") &&
+                 Contains("1 list of texture coordinates that does not suit its face") &&
+                 Contains("1 list of normals that does not suit its face"));
+  const Mesh both = read("3 0 1 2 3 1 0 1 3 4 4 2" + unread + "3 0 2 3 0 0" + unread, "4 0 1 2 3\n",
+                         "element tristrips 1\nproperty list uchar int vertex_indices\n");
+  CHECK(both.corner_uvs.size() == 12);
+  CHECK(both.corner_normals.size() == 12);
+  CHECK(check_mesh(both));
+  // One without the other is nothing.
+  const std::string half =
+      "element texcoord 1\nproperty list uchar double u\nproperty double v\n"
+      "element face 1\nproperty list uchar int vertex_indices\n"
+      "property list uchar int texcoord_indices\n";
+  CHECK(parse_ply(header(with_uvs + half) + points_with_uvs + "1 7 8\n3 0 1 2 3 0 0 0\n", "m.ply")
+            ->corner_uvs == std::vector{0, 1, 2});
+}
+
 TEST_CASE("faces may come first, and lines among them are passed over", "[mesh][read_ply]") {
   const Mesh mesh =
       parse_ply(header("element face 3\nproperty list uchar int vertex_indices\n" + with_uvs) +

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -40,6 +41,19 @@ struct Header {
   std::size_t size = 0;  ///< offset of the elements
   int line_count = 0;
 };
+
+// The names of what is read; all other elements and properties are skipped.
+
+/// Those of a vertex besides x, y and z: of its normal, and of its (u,v) in the order in which they
+/// are looked for.
+inline constexpr std::array<std::string_view, 3> normal_names = {"nx", "ny", "nz"};
+inline constexpr std::array<std::array<std::string_view, 2>, 4> uv_names = {
+    {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}, {"tx", "ty"}}};
+
+/// Numbered (u,v): an element with the properties `u` and `v`, and the list of a face with their
+/// numbers. Its other list has equal numbers for corners that share a normal. Pliant's own.
+inline constexpr std::string_view uv_element = "texcoord", uv_indices = "texcoord_indices",
+                                  normal_indices = "normal_indices";
 
 /// The bytes of a number of that type in a binary file.
 std::size_t size_of(NumberType type);

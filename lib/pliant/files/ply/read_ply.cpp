@@ -19,6 +19,7 @@
 #include "pliant/files/ply/ply_header.hpp"
 #include "pliant/files/read_file.hpp"
 #include "pliant/mesh/normals.hpp"
+#include "pliant/mesh/triangles/equal_numbers.hpp"
 
 namespace pliant {
 namespace {
@@ -118,6 +119,9 @@ class PlyReader {
         numbers_(body, header.encoding, header.line_count + 1, poll_) {}
 
   Result<Mesh> read() {
+    has_numbered_uvs_ =
+        has(uv_element, "u", false) && has(uv_element, "v", false) && has("face", uv_indices, true);
+    has_numbered_normals_ = has("face", normal_indices, true);
     for (const PlyElement& element : header_.elements) {
       if (auto read = read_element(element); !read) return fail(read.error());
     }
@@ -132,7 +136,10 @@ class PlyReader {
     left_out_.add("(u,v) that is not a pair of numbers", "(u,v) that are not pairs of numbers",
                   drop_invalid_uvs(mesh_));
     mesh_.left_out = left_out_.text();
-    if (!normals_.empty()) {
+    if (has_numbered_normals_) {
+      mesh_.corner_normals = numbers_of_equal(normal_numbers_, poll_);
+      if (poll_.after(0)) return interrupted();
+    } else if (!normals_.empty()) {
       auto shared =
           shared_normals(mesh_, {std::move(normals_), mesh_.corner_vertices, {}}, should_stop_);
       if (!shared) return fail(shared.error());
@@ -149,10 +156,23 @@ class PlyReader {
   // number.
   using Values = std::vector<std::vector<double>>;
 
+  // Whether an element of the file has a property, a list or a number.
+  bool has(std::string_view name, std::string_view property, bool is_list) const {
+    const auto element = std::ranges::find(header_.elements, name, &PlyElement::name);
+    if (element == header_.elements.end()) return false;
+    const int place = element->find({property});
+    return place >= 0 && is_list_of(*element, place) == is_list;
+  }
+
+  static bool is_list_of(const PlyElement& element, int property) {
+    return element.properties[static_cast<std::size_t>(property)].count_type.has_value();
+  }
+
   Result<void> read_element(const PlyElement& element) {
     const bool is_vertex = element.name == "vertex";
     const bool is_face = element.name == "face";
     const bool is_strip = element.name == "tristrips";
+    const bool is_uv = has_numbered_uvs_ && element.name == uv_element;
     if (element.properties.empty() && element.count > 0)
       return invalid(fmt::format("the element {} has no properties", in_quotes(element.name)));
     if (is_vertex) {
@@ -172,6 +192,12 @@ class PlyReader {
     for (std::int64_t k = 0; k < element.count; ++k) {
       if (auto read = read_values(element, k, values); !read) return read;
       if (is_vertex) add_vertex(values);
+      if (is_uv) {
+        const auto number = [&](std::string_view name) {
+          return values[static_cast<std::size_t>(element.find({name}))][0];
+        };
+        numbered_uvs_.push_back({number("u"), number("v")});
+      }
       if (is_face || is_strip) {
         if (auto added = is_face ? add_face(values, k) : add_strip(values, k); !added) return added;
       }
@@ -183,22 +209,19 @@ class PlyReader {
     x_ = vertex.find({"x"});
     y_ = vertex.find({"y"});
     z_ = vertex.find({"z"});
-    using Pair = std::array<std::string_view, 2>;
-    for (const auto& [u, v] :
-         {Pair{"s", "t"}, Pair{"u", "v"}, Pair{"texture_u", "texture_v"}, Pair{"tx", "ty"}}) {
+    for (const auto& [u, v] : uv_names) {
       if (u_ >= 0 || vertex.find({u}) < 0 || vertex.find({v}) < 0) continue;
       u_ = vertex.find({u});
       v_ = vertex.find({v});
     }
     if (x_ < 0 || y_ < 0 || z_ < 0) return invalid("the vertices have no x, y and z");
     const auto is_list = [&](int property) {
-      return property >= 0 &&
-             vertex.properties[static_cast<std::size_t>(property)].count_type.has_value();
+      return property >= 0 && is_list_of(vertex, property);
     };
     for (const int property : {x_, y_, z_, u_, v_})
       if (is_list(property)) return invalid("a coordinate of the vertices is a list");
     if (auto found = find_attributes(vertex); !found) return found;
-    normal_ = {vertex.find({"nx"}), vertex.find({"ny"}), vertex.find({"nz"})};
+    for (std::size_t k = 0; k < normal_.size(); ++k) normal_[k] = vertex.find({normal_names[k]});
     has_normals_ = std::all_of(normal_.begin(), normal_.end(),
                                [&](int property) { return property >= 0 && !is_list(property); });
     return {};
@@ -207,7 +230,7 @@ class PlyReader {
   Result<void> find_attributes(const PlyElement& vertex) {
     for (const std::string& name : names_) {
       const int place = vertex.find({name});
-      if (place < 0 || vertex.properties[static_cast<std::size_t>(place)].count_type) {
+      if (place < 0 || is_list_of(vertex, place)) {
         std::vector<std::string> numbers;
         for (const Property& property : vertex.properties) {
           if (!property.count_type) numbers.push_back(property.name);
@@ -223,15 +246,17 @@ class PlyReader {
 
   Result<void> find_face_properties(const PlyElement& face) {
     corners_ = face.find({"vertex_indices", "vertex_index"});
-    corner_uvs_ = face.find({"texcoord"});
-    const auto is_list = [&](int k) {
-      return face.properties[static_cast<std::size_t>(k)].count_type.has_value();
-    };
-    if (corners_ < 0 || !is_list(corners_)) {
+    if (corners_ < 0 || !is_list_of(face, corners_)) {
       return invalid(fmt::format("the {} have no list vertex_indices",
                                  face.name == "face" ? "faces" : face.name));
     }
-    if (corner_uvs_ >= 0 && !is_list(corner_uvs_)) corner_uvs_ = -1;
+    const auto find_list = [&](std::string_view name) {
+      const int place = face.find({name});
+      return place >= 0 && is_list_of(face, place) ? place : -1;
+    };
+    corner_uvs_ = has_numbered_uvs_ ? -1 : find_list("texcoord");
+    uv_numbers_of_face_ = has_numbered_uvs_ ? find_list(uv_indices) : -1;
+    normals_of_face_ = find_list(normal_indices);
     return {};
   }
 
@@ -289,14 +314,24 @@ class PlyReader {
       left_out_.add(small_face, small_faces);
       return {};
     }
-    std::span<const double> uvs;
-    if (corner_uvs_ >= 0) uvs = values[static_cast<std::size_t>(corner_uvs_)];
-    if (!uvs.empty() && uvs.size() != 2 * corners.size()) {
-      left_out_.add("list of texture coordinates that does not suit its face",
-                    "lists of texture coordinates that do not suit their faces");
-      uvs = {};
-    }
-    return add_corners(corners, uvs, "face", index);
+    const auto list = [&](int property, std::size_t size, std::string_view one,
+                          std::string_view several) {
+      std::span<const double> numbers;
+      if (property >= 0) numbers = values[static_cast<std::size_t>(property)];
+      if (numbers.empty() || numbers.size() == size) return numbers;
+      left_out_.add(one, several);
+      return std::span<const double>();
+    };
+    constexpr std::string_view uv_list = "list of texture coordinates that does not suit its face",
+                               uv_lists =
+                                   "lists of texture coordinates that do not suit their faces";
+    const CornerLists lists = {
+        .uvs = list(corner_uvs_, 2 * corners.size(), uv_list, uv_lists),
+        .uv_numbers = list(uv_numbers_of_face_, corners.size(), uv_list, uv_lists),
+        .normals =
+            list(normals_of_face_, corners.size(), "list of normals that does not suit its face",
+                 "lists of normals that do not suit their faces")};
+    return add_corners(corners, lists, "face", index);
   }
 
   // Triangles of three corners in a row, every second one the other way round; -1 ends a strip. One
@@ -316,21 +351,40 @@ class PlyReader {
     return {};
   }
 
-  Result<void> add_corners(std::span<const double> corners, std::span<const double> uvs,
+  // What a face has of its corners; empty: nothing.
+  struct CornerLists {
+    std::span<const double> uvs = {};         // u v of each
+    std::span<const double> uv_numbers = {};  // -1: none
+    std::span<const double> normals = {};     // equal: shared
+  };
+
+  Result<void> add_corners(std::span<const double> corners, const CornerLists& lists,
                            const char* element, std::int64_t index) {
-    constexpr std::size_t most = std::numeric_limits<int>::max();
+    constexpr int most = std::numeric_limits<int>::max();
     if (poll_.after(parts_of_number * corners.size())) return interrupted();
-    if (corners.size() > most - mesh_.corner_vertices.size())
+    if (corners.size() > static_cast<std::size_t>(most) - mesh_.corner_vertices.size())
       return invalid(fmt::format("the faces have more than {} corners", most));
     mesh_.face_sizes.push_back(static_cast<int>(corners.size()));
     faces_.push_back({element, index});
+    const auto to_index = [](double number) {
+      const bool is_index =
+          number >= 0 && number < static_cast<double>(most) && number == std::floor(number);
+      return is_index ? std::optional(static_cast<int>(number)) : std::nullopt;
+    };
     for (std::size_t k = 0; k < corners.size(); ++k) {
-      const bool is_index = corners[k] >= 0 && corners[k] < static_cast<double>(most) &&
-                            corners[k] == std::floor(corners[k]);
-      mesh_.corner_vertices.push_back(is_index ? static_cast<int>(corners[k]) : -1);
+      const int vertex = to_index(corners[k]).value_or(-1);
+      mesh_.corner_vertices.push_back(vertex);
       // Vertices' (u,v) are known only in check_indices: faces may come before vertices.
-      mesh_.corner_uvs.push_back(uvs.empty() ? -1 : static_cast<int>(corner_pairs_.size()));
-      if (!uvs.empty()) corner_pairs_.push_back({uvs[2 * k], uvs[2 * k + 1]});
+      const bool has_own = !lists.uvs.empty();
+      mesh_.corner_uvs.push_back(has_own ? static_cast<int>(corner_pairs_.size()) : -1);
+      if (has_own) corner_pairs_.push_back({lists.uvs[2 * k], lists.uvs[2 * k + 1]});
+      if (has_numbered_uvs_) {
+        const double number = lists.uv_numbers.empty() ? -1 : lists.uv_numbers[k];
+        mesh_.corner_uvs.back() = number == -1 ? -1 : to_index(number).value_or(most);
+      }
+      if (!has_numbered_normals_) continue;
+      const bool has_normal = !lists.normals.empty() && lists.normals[k] >= 0;
+      normal_numbers_.push_back(has_normal ? lists.normals[k] : -1.0 - vertex);
     }
     return {};
   }
@@ -343,7 +397,8 @@ class PlyReader {
   // Corners without (u,v) of their own use the vertex's.
   Result<void> check_indices() {
     const std::size_t vertex_count = coordinates_.size() / 3;
-    const auto first_pair = static_cast<int>(mesh_.uvs.size());
+    if (has_numbered_uvs_) mesh_.uvs = std::move(numbered_uvs_);
+    const auto first_pair = has_numbered_uvs_ ? 0 : static_cast<int>(mesh_.uvs.size());
     std::size_t corner = 0;
     for (std::size_t face = 0; face < mesh_.face_sizes.size(); ++face) {
       if (poll_.after(static_cast<std::size_t>(mesh_.face_sizes[face]))) return interrupted();
@@ -355,7 +410,11 @@ class PlyReader {
                                      outside(vertex, vertex_count)));
         }
         int& uv = mesh_.corner_uvs[corner];
-        if (uv >= 0) {
+        if (has_numbered_uvs_ && uv >= static_cast<std::int64_t>(mesh_.uvs.size())) {
+          uv = -1;
+          left_out_.add("number of texture coordinates that is out of range",
+                        "numbers of texture coordinates that are out of range");
+        } else if (uv >= 0) {
           uv += first_pair;
         } else if (first_pair > 0) {
           uv = vertex;
@@ -374,16 +433,20 @@ class PlyReader {
   StopPoll poll_;
   Numbers numbers_;
   Mesh mesh_;
-  std::vector<double> coordinates_;                          // x y z of each vertex
-  std::vector<std::array<double, 3>> normals_;               // of each vertex, if it has one
-  std::vector<std::array<double, 2>> corner_pairs_;          // (u,v) of corners
+  std::vector<double> coordinates_;                  // x y z of each vertex
+  std::vector<std::array<double, 3>> normals_;       // of each vertex, if it has one
+  std::vector<std::array<double, 2>> corner_pairs_;  // (u,v) of corners
+  bool has_numbered_uvs_ = false, has_numbered_normals_ = false;
+  std::vector<std::array<double, 2>> numbered_uvs_;          // that corners refer to
+  std::vector<double> normal_numbers_;                       // of corners; equal: shared
   std::vector<std::pair<const char*, std::int64_t>> faces_;  // element and index of each face kept
   int x_ = -1, y_ = -1, z_ = -1, u_ = -1, v_ = -1;           // properties of a vertex
   std::array<int, 3> normal_ = {-1, -1, -1};                 // likewise
   bool has_normals_ = false;
-  std::vector<int> attributes_;         // likewise, of each name
-  int corners_ = -1, corner_uvs_ = -1;  // properties of a face
-  std::vector<int> needed_;             // properties of an element that must be finite numbers
+  std::vector<int> attributes_;  // likewise, of each name
+  // Properties of a face.
+  int corners_ = -1, corner_uvs_ = -1, uv_numbers_of_face_ = -1, normals_of_face_ = -1;
+  std::vector<int> needed_;  // properties of an element that must be finite numbers
   LeftOut left_out_;
 };
 

@@ -24,11 +24,14 @@ namespace pliant {
 /// v`, `texture_u texture_v`, `tx ty`; from `face`: the list `vertex_indices` or `vertex_index`,
 /// and the list `texcoord` of u v u v … for its corners, which has precedence over (u,v) of
 /// vertices; from `tristrips`: the same list, of corners of strips of triangles, where -1 ends a
-/// strip. Normals `nx ny nz` decide which vertices at one place join smoothly. Everything else is
+/// strip. Normals `nx ny nz` decide which vertices at one place join smoothly. What `write_mesh`
+/// adds has precedence over these: an element `texcoord` of `u v` with a list `texcoord_indices` of
+/// each face, and a list `normal_indices`, equal at corners that share a normal. Everything else is
 /// skipped, also points without faces.
 ///
 /// As other programs do, it leaves out faces of fewer than three corners, edges, (u,v) that are no
-/// numbers, a `texcoord` of another length than its face, and bytes after the last element.
+/// numbers or do not exist, lists of a face's corners of another length than the face, and bytes
+/// after the last element.
 /// `Mesh::left_out` counts them.
 ///
 /// `attributes` names properties of the element `vertex`, numbers, that the mesh keeps as its
