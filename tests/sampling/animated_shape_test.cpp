@@ -159,6 +159,45 @@ TEST_CASE("a cache that does not fit its shape is refused before the run", "[sam
   CHECK(animate(poor, again.surfaces[0], again).error().code == ErrorCode::OutOfMemory);
 }
 
+TEST_CASE("samples of a program are checked and counted as those of a file", "[sampling][cache]") {
+  const auto with_samples = [](std::vector<Field> samples) {
+    Scene s = with_cache("", sheet("s", 3));
+    s.surfaces[0].cache.samples = ShapeSamples(std::move(samples));
+    return s;
+  };
+  Field eight = Field::Zero(8, 3);
+  CHECK_THAT(refusal(with_samples({eight})),
+             Contains("surface \"s\": its cache has 8 vertices, but the shape has 9"));
+  CHECK_THAT(refusal(with_samples({ways({0})[0], eight})),
+             Contains("surface \"s\": sample 1 has 8 vertices, but sample 0 has 9"));
+  CHECK_THAT(refusal(with_samples({Field(0, 3)})), Contains("sample 0 has no vertices"));
+  auto samples = ways({0, 1, 2, 3, 4});
+  samples[3](4, 1) = std::numeric_limits<double>::infinity();
+  Scene s = with_samples(samples);
+  s.surfaces[0].cache.first = 10;
+  CHECK_THAT(refusal(s), Contains("surface \"s\": sample 3, at frame 13: vertex 4 is at (") &&
+                             Contains("inf") && Contains("must be finite"));
+  s.end = 11;  // frame 13 is not asked for
+  CHECK(made(s));
+  // A longer cache takes more, by what it is.
+  const auto bytes = [&](int count) {
+    MemoryBudget plenty(1U << 30U);
+    RunContext context;
+    context.memory = &plenty;
+    const auto shape =
+        made(with_samples(ways(std::vector<double>(static_cast<std::size_t>(count), 1))), context);
+    return shape->memory.bytes();
+  };
+  CHECK(bytes(1000) - bytes(1) >= 999 * 9 * 3 * sizeof(double));
+  MemoryBudget little(100'000);
+  RunContext context;
+  context.memory = &little;
+  CHECK(made(with_samples(ways({0})), context));
+  const auto large = made(with_samples(ways(std::vector<double>(1000, 0))), context);
+  REQUIRE_FALSE(large);
+  CHECK(large.error().code == ErrorCode::OutOfMemory);
+}
+
 TEST_CASE("vertices of one node of a grid must stay together, those of a surface need not",
           "[sampling][cache]") {
   const ScratchFolder folder;

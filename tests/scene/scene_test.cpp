@@ -37,6 +37,7 @@ TEST_CASE("scenes are compared by all their values, wherever they come from", "[
     Scene scene;
     scene.end = 9;
     Surface sheet{.name = "sheet"};
+    sheet.cache.samples = ShapeSamples({Field::Ones(9, 3), Field::Zero(9, 3)});
     sheet.maps.push_back({.channel = MapChannel::Damping, .values = std::vector<double>(9, 0.5)});
     Mesh mesh = make_mesh(GridSheet{.columns = 4, .rows = 3});
     NurbsNet net{.u = {.count = 3, .degree = 2}, .v = {.count = 3, .degree = 2}};
@@ -62,6 +63,14 @@ TEST_CASE("scenes are compared by all their values, wherever they come from", "[
       [](Scene& s) { s.surfaces[0].reading.weld = 0; },
       [](Scene& s) { s.surfaces[0].subdivision = Subdivision{}; },
       [](Scene& s) { s.surfaces[0].cache.path = "a.npy"; },
+      [](Scene& s) { s.surfaces[0].cache.samples = {}; },
+      [](Scene& s) { s.surfaces[0].cache.samples = ShapeSamples({Field::Ones(9, 3)}); },
+      [](Scene& s) {
+        s.surfaces[0].cache.samples = ShapeSamples({Field::Ones(9, 3), Field::Ones(9, 3)});
+      },
+      [](Scene& s) {
+        s.surfaces[0].cache.samples = ShapeSamples({Field::Ones(9, 3), Field::Zero(8, 3)});
+      },
       [](Scene& s) { s.surfaces[0].maps[0].values[4] = 0.25; },
       [](Scene& s) {
         s.surfaces[0].solver.edges = Edges{};

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -280,6 +281,54 @@ TEST_CASE(
   for (int frame = 1; frame < 12; ++frame) {
     CHECK(all(live.positions().value()) == at(frame));
     REQUIRE(live.advance());
+  }
+}
+
+TEST_CASE("samples of a program move as those of a file, and find their states",
+          "[simulation][cache]") {
+  const ScratchFolder folder;
+  const std::vector<Field> samples = waving(sheet_vertices(), 9);
+  const std::string file = write_cache(folder, "a.npy", samples);
+  Surface grid = whole(sheet("s"));
+  if (GENERATE(false, true)) grid = as_triangles(of_mesh("s", sheet_mesh()));
+  if (GENERATE(false, true)) {
+    grid.solver.loop = 6;
+    grid.solver.region = SolvedRegion::Forces;
+  }
+  const std::optional<double> first =
+      GENERATE(std::optional<double>(), std::optional<double>(2.25));
+  grid.cache = {file, first};
+  Scene by_file = scene({grid}, {sway()}), by_program = by_file;
+  by_program.surfaces[0].cache = {.first = first, .samples = ShapeSamples(samples)};
+  CHECK_FALSE(by_file == by_program);
+  MemoryStateStore store(1 << 24);
+  auto expected = Simulation::make(by_file, {.store = &store}).value();
+  auto found = Simulation::make(by_program, {.store = &store}).value();
+  for (const int frame : expected.frames()) {
+    const Field of_file = expected.at(frame).value().surfaces()[0].positions();
+    CHECK(found.at(frame).value().surfaces()[0].positions() == of_file);
+  }
+  CHECK(expected.frame_counts().solved > 0);
+  CHECK(found.frame_counts().solved == 0);
+}
+
+TEST_CASE("a cache of a file and of a program is refused, and copies share samples",
+          "[simulation][cache]") {
+  Scene s = scene({sheet("s")}, {});
+  s.surfaces[0].cache.samples = ShapeSamples({sheet_vertices()});
+  const Scene copy = s;
+  CHECK(&copy.surfaces[0].cache.samples[0] == &s.surfaces[0].cache.samples[0]);
+  CHECK(check_scene(s).empty());
+  s.surfaces[0].cache.path = "a.npy";
+  s.colliders = {{.name = "c", .shape = ClosedMesh{.cache = s.surfaces[0].cache}}};
+  const auto problems = check_scene(s);
+  for (const char* name : {"s", "c"}) {
+    CHECK(std::ranges::any_of(problems, [&](const Error& problem) {
+      return problem.message == fmt::format(
+                                    "{}.cache has a file and samples of a program, but "
+                                    "must have one of them",
+                                    name);
+    }));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "pliant/core/shelf.hpp"
 #include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/changes/change_texts.hpp"
+#include "support/caches.hpp"
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
 #include "support/scratch_folder.hpp"
@@ -76,6 +77,28 @@ TEST_CASE("a take has the bits of its scene, whatever runs it", "[sweep][threads
     std::get<GridSheet>(edited.surfaces[0].shape).columns = take % 2 == 0 ? 9 : 11;
     CHECK(*outcome.measures == measures_of(edited));
   }
+}
+
+TEST_CASE("takes share the samples of a program, and move as by a file",
+          "[sweep][cache][threads]") {
+  const ScratchFolder folder;
+  std::vector<Field> samples;
+  for (int k = 0; k < 8; ++k) {
+    samples.push_back(sheet_vertices(11));
+    samples.back().col(1).array() += 0.05 * k * k;
+  }
+  Scene base = poked();
+  base.forces.push_back(sway());
+  base.surfaces[0].cache.samples = ShapeSamples(samples);
+  const std::vector<std::string> vary = {"sheet.density=3,40", "sheet.cacheStart=1,2.5"};
+  const Outcomes found = run_all(sweep_of(vary, base), {.threads = 3});
+  base.surfaces[0].cache = {.path = write_cache(folder, "a.npy", samples)};
+  const Outcomes expected = run_all(sweep_of(vary, base));
+  for (const auto& [take, outcome] : expected) {
+    REQUIRE(outcome.measures);
+    CHECK(*found.at(take).measures == *outcome.measures);
+  }
+  CHECK_FALSE(*expected.at(0).measures == *expected.at(1).measures);
 }
 
 TEST_CASE("a take that fails stops nothing", "[sweep][threads]") {

@@ -75,8 +75,9 @@ AnimatedShape::AnimatedShape(PointCache cache, std::vector<double> frames, const
 Result<void> AnimatedShape::check_sample(int number, const Field& positions) const {
   const auto refuse = [&](const std::string& message) {
     return fail(ErrorCode::InvalidInput,
-                fmt::format("cache {}, sample {}, at frame {}: {}", cache_.file(), number,
-                            frames_[static_cast<std::size_t>(number)], message));
+                fmt::format("{}sample {}, at frame {}: {}",
+                            cache_.file().empty() ? "" : fmt::format("cache {}, ", cache_.file()),
+                            number, frames_[static_cast<std::size_t>(number)], message));
   };
   for (Eigen::Index row = 0; row < positions.rows(); ++row) {
     const auto at = positions.row(row);
@@ -214,16 +215,18 @@ Result<void> animate(RestShape& shape, MemoryShare& memory, const CacheUse& use,
     error.message = fmt::format("{}: {}{}", use.title, part, error.message);
     return fail(scene.origin.located(std::move(error), scene.origin.at(use.name, "cache")));
   };
-  auto cache = PointCache::open(use.cache.path, scene.origin.root);
+  auto cache = use.cache.samples.is_empty() ? PointCache::open(use.cache.path, scene.origin.root)
+                                            : PointCache::of_samples(use.cache.samples);
   if (!cache) return located(cache.error());
   const auto vertices = std::ssize(shape.cache_nodes());
   if (cache->vertex_count() != vertices) {
-    return located({.message = fmt::format("it has {} vertices, but the shape has {}",
+    return located({.message = fmt::format("{} has {} vertices, but the shape has {}",
+                                           cache->file().empty() ? "its cache" : "it",
                                            cache->vertex_count(), vertices),
                     .file = use.cache.path});
   }
   const std::size_t bytes =
-      memory.bytes() + use.bytes +
+      memory.bytes() + use.bytes + cache->bytes() +
       AnimatedShape::bytes(static_cast<std::size_t>(vertices), cache->sample_count());
   if (!memory.try_resize(bytes)) {
     return located({.code = ErrorCode::OutOfMemory,

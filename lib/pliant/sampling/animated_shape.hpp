@@ -62,7 +62,7 @@ class AnimatedShape {
   double last_frame() const { return frames_.back(); }
   int sample_count() const { return cache_.sample_count(); }
 
-  /// What all of it takes. [bytes]
+  /// What all of it takes besides its cache. [bytes]
   static std::size_t bytes(std::size_t vertex_count, int sample_count);
 
  private:

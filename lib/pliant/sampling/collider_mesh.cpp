@@ -120,7 +120,7 @@ struct MeshValues {
 MeshValues values_of(const Collider& collider, const Scene& scene, std::size_t surfaces) {
   const auto& [mesh, cache] = std::get<ClosedMesh>(collider.shape);
   const FrameSpan used = sampled_frames(scene);
-  const bool moves = !cache.path.empty();
+  const bool moves = !cache.is_empty();
   return {.name = collider.name,
           .root = scene.origin.root,
           .path = mesh.path,
@@ -236,7 +236,7 @@ Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& c
     return fail(reader.open(*mesh, *surface, *edge));
 
   const ShapeCache& cache = std::get<ClosedMesh>(collider.shape).cache;
-  const bool moves = !cache.path.empty() || collider.transform.scale.is_animated();
+  const bool moves = !cache.is_empty() || collider.transform.scale.is_animated();
   const std::size_t poses = 2 + (moves ? most_poses + poses_of_surface * surfaces : 0);
   const std::size_t kept = SolidMesh::bytes(made->faces_.triangles.size(),
                                             static_cast<std::size_t>(points.rows()), poses);
@@ -251,7 +251,7 @@ Result<std::shared_ptr<const ColliderMesh>> ColliderMesh::make(const Collider& c
   shape.mesh.first_index = mesh->first_index;
   *mesh = {};
   if (auto taken = reader.take(kept); !taken) return fail(taken.error());
-  if (cache.path.empty()) return std::shared_ptr<const ColliderMesh>(std::move(made));
+  if (cache.is_empty()) return std::shared_ptr<const ColliderMesh>(std::move(made));
   const FrameSpan used = sampled_frames(scene);
   auto moved = animate(shape, memory,
                        {.title = reader.title(),

@@ -101,6 +101,7 @@ Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin&
   if (made && !found) {
     auto shape = std::make_shared<ShapeItem>();
     shape->surface = surface;
+    shape->surface.cache = {};  // is not compared, and may be large
     shape->root = origin.root;
     shape->shape = made->shape;
     shape->bytes = made->memory.bytes();

@@ -34,9 +34,12 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
     for (auto& file : mesh_references(*opened, mesh.root, should_stop))
       add(std::move(file), "a file that a mesh of the scene refers to", mesh.root);
   };
+  const auto add_cache = [&](const ShapeCache& cache) {
+    if (!cache.path.empty()) add(cache.path, "a cache of the scene", root);
+  };
   for (const Surface& surface : scene.surfaces) {
     if (is_stopped(should_stop)) break;
-    if (surface.is_animated()) add(surface.cache.path, "a cache of the scene", root);
+    add_cache(surface.cache);
     for (const MaterialMap& map : surface.maps) {
       if (!map.file.empty()) add(map.file, "a map of the scene", root);
     }
@@ -49,7 +52,7 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
     if (is_stopped(should_stop)) break;
     const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
     if (!closed) continue;
-    if (!closed->cache.path.empty()) add(closed->cache.path, "a cache of the scene", root);
+    add_cache(closed->cache);
     add_mesh(closed->mesh);
   }
   return inputs;

@@ -19,6 +19,7 @@
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
+#include "pliant/mesh/shape_samples.hpp"
 #include "pliant/mesh/written/nurbs_net.hpp"
 #include "pliant/mesh/written/subdivision.hpp"
 #include "pliant/scene/text/text_place.hpp"
@@ -40,11 +41,15 @@ struct MeshFile {
   friend bool operator==(const MeshFile&, const MeshFile&) = default;
 };
 
-/// An animation of a surface's rest shape, or of a collider's mesh, in a file: .pc2, .mdd or .npy.
+/// An animation of a surface's rest shape, or of a collider's mesh, in a file or given by a
+/// program. At most one of `path` and `samples` is not empty; neither: the shape stays as it is.
 struct ShapeCache {
-  std::string path = {};             ///< as passed to open; empty: the shape stays as it is
+  std::string path = {};             ///< as passed to open: .pc2, .mdd or .npy
   std::optional<double> first = {};  ///< the frame of its first sample; none: that of a .pc2
                                      ///< itself, else the scene's start
+  ShapeSamples samples = {};         ///< one frame apart, as those of a .npy
+
+  bool is_empty() const { return path.empty() && samples.is_empty(); }
 
   friend bool operator==(const ShapeCache&, const ShapeCache&) = default;
 };
@@ -175,7 +180,7 @@ struct Surface {
   SolverSettings solver = {};
 
   bool is_driven() const { return !driven_by.empty(); }
-  bool is_animated() const { return !cache.path.empty(); }  ///< its shape at rest moves
+  bool is_animated() const { return !cache.is_empty(); }  ///< its shape at rest moves
 
   friend bool operator==(const Surface&, const Surface&) = default;
 };

@@ -42,6 +42,20 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
           "surface \"{}\" has a mesh made by a program, which a scene file cannot "
           "contain; write it to a mesh file",
           surface.name);
+  const auto cache_problem = [](const std::string& name, const ShapeCache& cache) {
+    return cache.samples.is_empty()
+               ? std::nullopt
+               : std::optional(fmt::format("{}.cache has samples of a program, which a scene file "
+                                           "cannot contain; write them to a file",
+                                           name));
+  };
+  for (const Surface& surface : scene.surfaces)
+    if (auto problem = cache_problem(surface.name, surface.cache)) return problem;
+  for (const Collider& collider : scene.colliders) {
+    const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
+    if (!closed) continue;
+    if (auto problem = cache_problem(collider.name, closed->cache)) return problem;
+  }
   for (const Surface& surface : scene.surfaces) {
     for (const MaterialMap& map : surface.maps) {
       if (!map.values.empty())

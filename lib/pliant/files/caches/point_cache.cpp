@@ -103,6 +103,23 @@ Result<PointCache> PointCache::of_bytes(std::string bytes, const std::filesystem
   return PointCache(file.string(), std::move(held), *std::move(layout));
 }
 
+Result<PointCache> PointCache::of_samples(ShapeSamples samples) {
+  PLIANT_EXPECTS(!samples.is_empty());
+  const Eigen::Index vertices = samples[0].rows();
+  for (std::size_t k = 0; k < samples.count(); ++k) {
+    const Eigen::Index own = samples[k].rows();
+    if (own == 0) return invalid(fmt::format("sample {} has no vertices", k));
+    if (own != vertices)
+      return invalid(
+          fmt::format("sample {} has {} vertices, but sample 0 has {}", k, own, vertices));
+  }
+  PointCache cache({}, nullptr,
+                   {.vertex_count = static_cast<int>(vertices),
+                    .sample_count = static_cast<int>(samples.count())});
+  cache.samples_ = std::move(samples);
+  return cache;
+}
+
 Result<std::vector<double>> PointCache::frames(std::optional<double> first, int start,
                                                double fps) const {
   std::vector<double> frames(static_cast<std::size_t>(sample_count()));
@@ -132,6 +149,10 @@ Result<std::vector<double>> PointCache::frames(std::optional<double> first, int 
 
 Result<Field> PointCache::read(int sample, Field reuse) const {
   PLIANT_EXPECTS(sample >= 0 && sample < sample_count());
+  if (!bytes_) {
+    reuse = samples_[static_cast<std::size_t>(sample)];
+    return reuse;
+  }
   constexpr Eigen::Index most_rows = 4096;
   const std::size_t row_bytes = 3 * layout_.number_size();
   alignas(8) std::array<char, 3 * sizeof(double) * most_rows> room;

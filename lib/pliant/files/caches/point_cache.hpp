@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -9,11 +10,12 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/result.hpp"
 #include "pliant/files/caches/cache_layout.hpp"
+#include "pliant/mesh/shape_samples.hpp"
 
 namespace pliant {
 
-/// The positions of a mesh's vertices at some times, its samples, in a file: .pc2, .mdd or .npy.
-/// Only what is asked for is read. Thread-safe.
+/// The positions of a mesh's vertices at some times, its samples: in a file, .pc2, .mdd or .npy, of
+/// which only what is asked for is read, or in memory. Thread-safe.
 class PointCache {
  public:
   /// Reads how the file is laid out. Errors: those of `OpenFile::open`; InvalidInput as
@@ -23,6 +25,10 @@ class PointCache {
 
   /// The same for the bytes of a file with this name.
   static Result<PointCache> of_bytes(std::string bytes, const std::filesystem::path& file);
+
+  /// The same for samples in memory, one frame apart. Errors: InvalidInput, naming the sample: it
+  /// has no vertices, or not as many as the first. Requires: there are samples.
+  static Result<PointCache> of_samples(ShapeSamples samples);
 
   int vertex_count() const { return layout_.vertex_count; }
   int sample_count() const { return layout_.sample_count; }
@@ -36,13 +42,17 @@ class PointCache {
   /// <= sample < sample_count().
   Result<Field> read(int sample, Field reuse = {}) const;
 
-  const std::string& file() const { return file_; }
+  const std::string& file() const { return file_; }  ///< empty: it is in memory
+
+  /// The memory that its samples take. [bytes]
+  std::size_t bytes() const { return samples_.bytes(); }
 
  private:
   PointCache(std::string file, std::shared_ptr<const CacheBytes> bytes, CacheLayout layout);
 
   std::string file_;
-  std::shared_ptr<const CacheBytes> bytes_;
+  std::shared_ptr<const CacheBytes> bytes_;  // null: it has samples
+  ShapeSamples samples_;
   CacheLayout layout_;
 };
 

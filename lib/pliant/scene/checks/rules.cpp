@@ -206,7 +206,8 @@ class WholeChecker {
 
   void check_cache(const Surface& surface) {
     check_ranges(surface.name, surface.cache);
-    if (!surface.is_animated()) return check_start(surface.name, surface.cache);
+    check_source(surface.name, surface.cache);
+    if (!surface.is_animated()) return;
     if (std::holds_alternative<NurbsNet>(surface.shape))
       complain(
           surface.name, "cache",
@@ -225,13 +226,17 @@ class WholeChecker {
 
   void check(const std::string& name, const ClosedMesh& closed) {
     check_ranges(name, closed);
-    if (closed.cache.path.empty()) check_start(name, closed.cache);
+    check_source(name, closed.cache);
   }
 
-  // Of a shape that no cache moves.
-  void check_start(const std::string& name, const ShapeCache& cache) {
-    if (cache.first && is_sound(name, "cache"))
+  void check_source(const std::string& name, const ShapeCache& cache) {
+    if (cache.is_empty() && cache.first && is_sound(name, "cache"))
       complain(name, "cacheStart", fmt::format("{}.cacheStart is given, but no cache", name));
+    if (!cache.path.empty() && !cache.samples.is_empty())
+      complain(name, "cache",
+               fmt::format("{}.cache has a file and samples of a program, but must have one of "
+                           "them",
+                           name));
   }
 
   void check_time(const Surface& surface) {
