@@ -112,12 +112,15 @@ TEST_CASE("what a scene file cannot contain is told", "[scene][write]") {
   Scene moved = scene({sheet("s")}, {}), hit = moved;
   moved.surfaces[0].cache.samples = ShapeSamples({Field::Zero(9, 3)});
   hit.colliders = {{.name = "c", .shape = ClosedMesh{.cache = moved.surfaces[0].cache}}};
+  Scene solid = hit;
+  solid.colliders[0].shape = ClosedMesh{.made = Mesh{}};
   Scene wrong = scene({sheet("s")}, {});
   wrong.fps = -1;
   for (const auto& [bad, part] :
        {std::pair{meshed, "mesh made by a program"}, std::pair{custom, "\"f\" is custom"},
         std::pair{apart, "\"c\" is apart from the other forces"},
         std::pair{moved, "s.cache has samples of a program"},
+        std::pair{solid, "collider \"c\" has a mesh made by a program"},
         std::pair{hit, "c.cache has samples of a program"},
         std::pair{steep, "the falloff curve of \"f\" has"}, std::pair{wrong, "fps is -1"}}) {
     const auto text = to_xml(bad);

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "contact/solid_meshes.hpp"
+#include "pliant/files/obj/read_obj.hpp"
+#include "pliant/scene/inputs.hpp"
 #include "support/caches.hpp"
 #include "support/catch.hpp"
 #include "support/met_scenes.hpp"
@@ -208,6 +210,43 @@ TEST_CASE("contact with meshes has the same bits for every order of frames and n
         CHECK(found.surface(name).positions() == expected[static_cast<std::size_t>(frame - 1)]);
     }
   }
+}
+
+TEST_CASE("a collider's mesh by a program is that of a file", "[simulation][contact][mesh]") {
+  using Catch::Matchers::Contains;
+  const ScratchFolder folder;
+  const ClosedMesh in_file = write_mesh(folder, "star.obj", star_mesh());
+  const Mesh mesh = read_obj(in_file.mesh.path).value();
+  Collider one =
+      collider("star", {.translate = vector_curve({{1, {0, 3, 0}}, {8, {0.4, -0.5, 0}}})});
+  one.shape = in_file;
+  const std::vector<Field> expected = frames_met(met_scene(wide_mat(), {one}, {weight_of(0.3)}));
+  REQUIRE(peak(expected) > 0.1);
+  one.shape = ClosedMesh{.made = mesh};
+  const Scene made = met_scene(wide_mat(), {one}, {weight_of(0.3)});
+  CHECK(frames_met(made) == expected);
+  CHECK(inputs_of(made).empty());
+
+  const auto refusal = [&](const ClosedMesh& closed, const SimulationOptions& options = {}) {
+    Scene bad = made;
+    bad.colliders[0].shape = closed;
+    const auto simulation = Simulation::make(bad, options);
+    REQUIRE_FALSE(simulation);
+    return simulation.error();
+  };
+  CHECK_THAT(refusal({.mesh = in_file.mesh, .made = mesh}).message,
+             Contains("star.file: the mesh is of a file and of a program"));
+  Mesh bad = mesh;
+  bad.corner_vertices[4] = 1000;
+  CHECK_THAT(refusal({.made = bad}).message,
+             Contains("collider \"star\": corner 5 refers to vertex 1001"));
+  bad = mesh;
+  bad.face_sizes.pop_back();
+  bad.corner_vertices.resize(bad.corner_vertices.size() - 3);
+  bad.corner_uvs = bad.corner_normals = {};
+  bad.corner_uvs.assign(bad.corner_vertices.size(), -1);
+  CHECK_THAT(refusal({.made = bad}).message, Contains("collider \"star\": the edge between"));
+  CHECK(refusal({.made = mesh}, {.max_memory = 10'000}).code == ErrorCode::OutOfMemory);
 }
 
 TEST_CASE("what the hollow of a mesh holds stays in it", "[simulation][contact][mesh]") {

@@ -29,19 +29,21 @@ class ColliderMeshReader {
                      MemoryShare& memory)
       : name_(collider.name),
         title_(fmt::format("collider \"{}\"", collider.name)),
-        file_(std::get<ClosedMesh>(collider.shape).mesh),
+        closed_(std::get<ClosedMesh>(collider.shape)),
         origin_(scene.origin),
         context_(context),
         memory_(memory) {}
 
   Result<Mesh> read() {
-    const auto opened = OpenFile::open(file_.path, origin_.root);
+    if (closed_.made) return copy(*closed_.made);
+    const MeshFile& file = closed_.mesh;
+    const auto opened = OpenFile::open(file.path, origin_.root);
     if (!opened) return fail(at_scene(opened.error()));
     std::size_t ahead = bytes_to_read(*opened);
     if (auto taken = take(ahead); !taken) return fail(taken.error());
-    ahead += bytes_to_read_references(*opened, file_.root, context_.should_stop);
+    ahead += bytes_to_read_references(*opened, file.root, context_.should_stop);
     if (auto taken = take(ahead); !taken) return fail(taken.error());
-    auto mesh = read_mesh(*opened, file_.object, file_.uv_set, file_.root, context_, {});
+    auto mesh = read_mesh(*opened, file.object, file.uv_set, file.root, context_, {});
     if (!mesh) return fail(at_scene(mesh.error()));
     return mesh;
   }
@@ -82,13 +84,21 @@ class ColliderMeshReader {
 
   Error about_mesh(Error error) const {
     if (error.code == ErrorCode::Interrupted) return error;
-    error.message = fmt::format("{}, mesh {}: {}", title_, file_.path, error.message);
+    const std::string mesh = closed_.made ? "" : ", mesh " + closed_.mesh.path;
+    error.message = fmt::format("{}{}: {}", title_, mesh, error.message);
     return at_scene(std::move(error));
   }
 
   const std::string& title() const { return title_; }
 
  private:
+  Result<Mesh> copy(const Mesh& made) {
+    if (auto taken = take(bytes_of(made)); !taken) return fail(taken.error());
+    if (auto checked = check_mesh(made, context_.should_stop); !checked)
+      return fail(about_mesh(checked.error()));
+    return made;
+  }
+
   // An error in the file's contents already names the file.
   Error at_scene(Error error) const {
     if (error.code == ErrorCode::Unreadable)
@@ -99,7 +109,7 @@ class ColliderMeshReader {
   }
 
   std::string name_, title_;
-  MeshFile file_;
+  const ClosedMesh& closed_;
   const SceneOrigin& origin_;
   const RunContext& context_;
   MemoryShare& memory_;
@@ -118,7 +128,7 @@ struct MeshValues {
 };
 
 MeshValues values_of(const Collider& collider, const Scene& scene, std::size_t surfaces) {
-  const auto& [mesh, cache] = std::get<ClosedMesh>(collider.shape);
+  const auto& [mesh, cache, made] = std::get<ClosedMesh>(collider.shape);
   const FrameSpan used = sampled_frames(scene);
   const bool moves = !cache.is_empty();
   return {.name = collider.name,
@@ -199,7 +209,9 @@ Result<std::shared_ptr<const ColliderMesh>> find_collider_mesh(const Collider& c
                                                                const RunContext& context,
                                                                MemoryShare& memory) {
   const std::size_t surfaces = count_surfaces(collider, scene);
-  if (!context.shelf) return ColliderMesh::make(collider, scene, surfaces, context, memory);
+  // A mesh made by a program is not compared.
+  if (!context.shelf || std::get<ClosedMesh>(collider.shape).made)
+    return ColliderMesh::make(collider, scene, surfaces, context, memory);
   const MeshValues values = values_of(collider, scene, surfaces);
   const Hash key = hash_of(collider.name);
   const auto found = context.shelf->find<ColliderMeshItem>(

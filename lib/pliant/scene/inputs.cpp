@@ -53,7 +53,7 @@ std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_
     const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
     if (!closed) continue;
     add_cache(closed->cache);
-    add_mesh(closed->mesh);
+    if (!closed->made) add_mesh(closed->mesh);
   }
   return inputs;
 }

@@ -349,11 +349,12 @@ struct PlaneChannels {
   friend bool operator==(const PlaneChannels&, const PlaneChannels&) = default;
 };
 
-/// What a closed mesh in a file encloses: each edge has two faces, which run through it in opposite
+/// What a closed mesh encloses: each edge has two faces, which run through it in opposite
 /// directions. It is turned outwards by its volume.
 struct ClosedMesh {
-  MeshFile mesh = {};     ///< without a set of UVs
-  ShapeCache cache = {};  ///< of its vertices
+  MeshFile mesh = {};             ///< without a set of UVs
+  ShapeCache cache = {};          ///< of its vertices
+  std::optional<Mesh> made = {};  ///< the mesh, made by a program; then `mesh` names no file
 
   friend bool operator==(const ClosedMesh&, const ClosedMesh&) = default;
 };

@@ -36,12 +36,14 @@ bool is_plain_falloff(const CurveKeys<1>& keys) {
 std::optional<std::string> what_no_file_contains(const Scene& scene) {
   if (const auto channel = first_adjusted_channel(scene))
     return fmt::format("the curve of {} is adjusted, which a scene file cannot contain", *channel);
+  const auto mesh_problem = [](std::string_view thing, const std::string& name) {
+    return fmt::format(
+        "{} \"{}\" has a mesh made by a program, which a scene file cannot contain; write it to a "
+        "mesh file",
+        thing, name);
+  };
   for (const Surface& surface : scene.surfaces)
-    if (std::holds_alternative<Mesh>(surface.shape))
-      return fmt::format(
-          "surface \"{}\" has a mesh made by a program, which a scene file cannot "
-          "contain; write it to a mesh file",
-          surface.name);
+    if (std::holds_alternative<Mesh>(surface.shape)) return mesh_problem("surface", surface.name);
   const auto cache_problem = [](const std::string& name, const ShapeCache& cache) {
     return cache.samples.is_empty()
                ? std::nullopt
@@ -54,6 +56,7 @@ std::optional<std::string> what_no_file_contains(const Scene& scene) {
   for (const Collider& collider : scene.colliders) {
     const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
     if (!closed) continue;
+    if (closed->made) return mesh_problem("collider", collider.name);
     if (auto problem = cache_problem(collider.name, closed->cache)) return problem;
   }
   for (const Surface& surface : scene.surfaces) {

@@ -227,6 +227,11 @@ class WholeChecker {
   void check(const std::string& name, const ClosedMesh& closed) {
     check_ranges(name, closed);
     check_source(name, closed.cache);
+    if (closed.made && !closed.mesh.path.empty())
+      complain(name, "file",
+               fmt::format("{}.file: the mesh is of a file and of a program, but must be of one of "
+                           "them",
+                           name));
   }
 
   void check_source(const std::string& name, const ShapeCache& cache) {
