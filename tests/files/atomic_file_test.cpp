@@ -170,6 +170,36 @@ TEST_CASE("what is saved during a rewrite is never lost", "[output][atomic_file]
   CHECK(folder.entry_count() == 1);
 }
 
+TEST_CASE("several files get their names together, or none does", "[output][atomic_file]") {
+  const ScratchFolder folder;
+  folder.write("a.txt", "old");
+  const auto begin = [&](std::vector<std::string> names) {
+    std::vector<AtomicFile> files;
+    for (const std::string& name : names) {
+      files.push_back(AtomicFile::create(folder.file(name)).value());
+      REQUIRE(files.back().write("new " + name));
+    }
+    return files;
+  };
+  const auto content = [&](const char* name) { return read_file(folder.file(name)).value(); };
+  std::vector<AtomicFile> files = begin({"a.txt", "b.txt", "c.txt"});
+  CHECK(folder.entry_count() == 4);
+  // In the moment before, a name becomes that of a folder.
+  std::filesystem::create_directory(folder.file("c.txt"));
+  const auto refused = commit_all(std::move(files));
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().file == folder.file("c.txt").string());
+  CHECK_THAT(refused.error().message, Contains("it is a folder"));
+  CHECK(content("a.txt") == "old");
+  CHECK_FALSE(std::filesystem::exists(folder.file("b.txt")));
+  CHECK(folder.entry_count() == 2);
+  std::filesystem::remove(folder.file("c.txt"));
+  REQUIRE(commit_all(begin({"a.txt", "b.txt", "c.txt"})));
+  for (const char* name : {"a.txt", "b.txt", "c.txt"})
+    CHECK(content(name) == std::string("new ") + name);
+  CHECK(folder.entry_count() == 3);
+}
+
 TEST_CASE("what cannot be written is an error that names the file", "[output][atomic_file]") {
   const ScratchFolder folder;
   const auto missing = AtomicFile::create(folder.file("no/such/a.txt"));

@@ -221,6 +221,51 @@ Result<bool> AtomicFile::place(const std::filesystem::path& file, bool only_new)
   return true;
 }
 
+// Requires: all bytes are written.
+Result<AtomicFile::Placed> AtomicFile::exchange(const OpenFolder& folder) const {
+  if (auto free = check_output_place(file_); !free) return fail(free.error());
+  const std::string name = file_.filename().string();
+  int error = folder.exchange(part_, name);
+  if (error == 0) return Placed::Exchanged;
+  const bool is_new = error == ENOENT;
+  error = folder.rename(part_, name);
+  if (error != 0) return unwritable(error);
+  return is_new ? Placed::New : Placed::Replaced;
+}
+
+Result<void> commit_all(std::vector<AtomicFile> files) {
+  using Placed = AtomicFile::Placed;
+  PLIANT_EXPECTS(!files.empty());
+  const OpenFolder folder(files.front().file_);
+  Result<void> done;
+  if (folder.error() != 0) done = files.front().unwritable(folder.error());
+  for (AtomicFile& file : files) {
+    PLIANT_EXPECTS(file.stream_ && file.file_.parent_path() == files.front().file_.parent_path());
+    if (auto finished = file.finish_bytes(); done) done = std::move(finished);
+  }
+  if (folder.error() != 0) return done;
+  const auto flush = [&]() -> Result<void> {
+    const int error = files.front().flush_ == Flush::All ? folder.flush() : 0;
+    return error == 0 ? Result<void>() : files.front().unwritable(error);
+  };
+  std::vector<Placed> placed;
+  while (done && placed.size() < files.size()) {
+    if (placed.size() + 1 == files.size()) done = flush();
+    if (!done) break;
+    const auto now = files[placed.size()].exchange(folder);
+    if (now) placed.push_back(*now);
+    if (!now) done = fail(now.error());
+  }
+  if (done) done = flush();
+  for (std::size_t k = done ? 0 : placed.size(); k-- > 0;) {
+    const std::string name = files[k].file_.filename().string();
+    if (placed[k] == Placed::Exchanged) folder.exchange(files[k].part_, name);
+    if (placed[k] == Placed::New) folder.remove(name);
+  }
+  for (const AtomicFile& file : files) folder.remove(file.part_);
+  return done;
+}
+
 // Writes all remaining bytes, and closes.
 Result<void> AtomicFile::finish_bytes() {
   std::FILE* const stream = stream_.release();

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
@@ -60,12 +61,22 @@ class AtomicFile {
   struct Close {
     void operator()(std::FILE* stream) const { std::fclose(stream); }
   };
+  friend Result<void> commit_all(std::vector<AtomicFile> files);
+
+  // How a file got its name.
+  enum class Placed {
+    New,        // no other file had it
+    Exchanged,  // the older file has the name of the part now
+    Replaced,   // the older file is gone, where the file system cannot exchange them
+  };
+
   using Stream = std::unique_ptr<std::FILE, Close>;
 
   AtomicFile(std::filesystem::path file, std::string part, Stream stream, Flush flush,
              bool is_as_old);
   Result<void> finish_bytes();
   Result<void> replace(const OpenFolder& folder, int own, std::string_view old_bytes);
+  Result<Placed> exchange(const OpenFolder& folder) const;
   Result<bool> place(const std::filesystem::path& file, bool only_new);
   tl::unexpected<Error> unwritable(int error_number) const;
 
@@ -75,6 +86,12 @@ class AtomicFile {
   Flush flush_;
   bool is_as_old_;  // whoever may access the older file may access this one, and nobody else
 };
+
+/// Gives files of one folder their names, in this order: all of them, or none, after which all
+/// older files are as they were, where the file system can exchange two files. After a power cut
+/// the last one has its name only if the others have theirs. Errors: as `AtomicFile::commit`; that
+/// an older file has become something else. Requires: none is committed, and all flush alike.
+Result<void> commit_all(std::vector<AtomicFile> files);
 
 /// Writes a whole file at once. Errors: those of `AtomicFile`.
 Result<void> write_file(const std::filesystem::path& file, std::string_view bytes,

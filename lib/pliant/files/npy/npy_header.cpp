@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "pliant/core/byte_order.hpp"
 #include "pliant/core/text.hpp"
@@ -92,6 +93,18 @@ Result<NpyHeader> header_of_literal(std::string_view literal, std::uint64_t begi
 }
 
 }  // namespace
+
+// Magic, version, length of the header, then a Python literal padded with spaces.
+std::string npy_head(std::span<const std::size_t> shape) {
+  std::string literal = fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}), }}",
+                                    fmt::join(shape, ", "));
+  constexpr std::size_t prefix = 10;
+  const std::size_t unpadded = prefix + literal.size() + 1;
+  literal.append((64 - unpadded % 64) % 64, ' ').push_back('\n');
+  std::string header("\x93NUMPY\x01\x00", 8);
+  append_number(header, static_cast<std::uint16_t>(literal.size()));
+  return header + literal;
+}
 
 Result<NpyHeader> read_npy_header(std::string_view bytes, std::uint64_t size) {
   constexpr std::string_view magic = "\x93NUMPY";

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,5 +30,10 @@ inline constexpr std::size_t longest_npy_head = 12 + (std::size_t{1} << 16);
 /// `longest_npy_head`. Errors: no .npy of version 1 to 3; its numbers are not float64 or float32;
 /// Fortran order; no shape of whole numbers. Whether the numbers are there is not checked.
 Result<NpyHeader> read_npy_header(std::string_view bytes, std::uint64_t size);
+
+/// The head of a .npy of float64, little-endian, in C order: format version 1.0 of
+/// numpy.lib.format, padded so that the numbers begin at a multiple of 64 bytes. Requires: two
+/// counts at least.
+std::string npy_head(std::span<const std::size_t> shape);
 
 }  // namespace pliant
