@@ -3,6 +3,7 @@
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
 #include "pliant/document/document.hpp"
+#include "pliant/document/save_scene.hpp"
 #include "pliant/feedback/contact_summary.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/feedback/suggestion.hpp"

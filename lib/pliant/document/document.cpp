@@ -16,7 +16,6 @@
 #include "pliant/files/read_file.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/read.hpp"
-#include "pliant/scene/write.hpp"
 
 namespace pliant {
 namespace {
@@ -188,13 +187,6 @@ Result<void> check_scene_place(const std::string& text, const std::string& name,
               fmt::format("the scene names files relative to its own folder {}; save it there",
                           or_here(folder).string()),
               file);
-}
-
-Result<void> save_scene(const Scene& scene, const std::string& file,
-                        const StopRequest& should_stop) {
-  const auto text = to_xml(scene, folder_of_file(file), should_stop);
-  if (!text) return fail(text.error());
-  return write_file(file, *text);
 }
 
 }  // namespace pliant

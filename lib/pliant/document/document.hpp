@@ -102,9 +102,4 @@ Result<void> check_scene_place(const std::string& text, const std::string& name,
                                const std::string& folder, const std::string& file,
                                const StopRequest& should_stop = {});
 
-/// Writes a scene made in code to a file, which appears whole or not at all; files that it names
-/// are written relative to the file's folder. Errors: those of `to_xml`; Unwritable.
-Result<void> save_scene(const Scene& scene, const std::string& file,
-                        const StopRequest& should_stop = {});
-
 }  // namespace pliant
