@@ -145,8 +145,9 @@ class TrianglePatchPlate final : public PatchPlate {
 
 }  // namespace
 
-TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
-                           const BodySettings& settings, SolverChoice solver, RunContext context,
+TriangleBody::TriangleBody(std::shared_ptr<const TriangleSurface> surface,
+                           std::shared_ptr<const PointTree> tree, const BodySettings& settings,
+                           SolverChoice solver, RunContext context,
                            std::shared_ptr<const NodeFactors> factors,
                            std::shared_ptr<const NodeMarks> held)
     : ElasticBody(surface->rest, static_cast<Eigen::Index>(surface->triangles.size()), settings,
@@ -192,7 +193,7 @@ Result<StepPlan> TriangleBody::look_again(const BodyInputs& inputs, StepPlan&& e
 
 Result<void> TriangleBody::plan(const BodyInputs& inputs, StepPlan& plan) const {
   PLIANT_EXPECTS(fits(inputs));
-  if (!settings_.is_animated) return plan_on(*surface_, tree_, inputs, plan);
+  if (!settings_.is_animated) return plan_on(*surface_, *tree_, inputs, plan);
   const TriangleSurface moved = posed(*surface_, *inputs.shape);
   const auto tree = PointTree::make(moved.rest, context_.should_stop);
   if (!tree) return fail(tree.error());

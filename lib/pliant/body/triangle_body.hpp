@@ -37,13 +37,14 @@ class TriangleBody final : public ElasticBody {
                SolverChoice solver = SolverChoice::Auto, RunContext context = {},
                std::shared_ptr<const NodeFactors> factors = {},
                std::shared_ptr<const NodeMarks> held = {})
-      : TriangleBody(surface, PointTree(surface->rest), settings, solver, std::move(context),
-                     std::move(factors), std::move(held)) {}
+      : TriangleBody(surface, std::make_shared<const PointTree>(surface->rest), settings, solver,
+                     std::move(context), std::move(factors), std::move(held)) {}
 
   /// The same with the tree of the surface's nodes.
-  TriangleBody(std::shared_ptr<const TriangleSurface> surface, PointTree tree,
-               const BodySettings& settings, SolverChoice solver, RunContext context,
-               std::shared_ptr<const NodeFactors> factors, std::shared_ptr<const NodeMarks> held);
+  TriangleBody(std::shared_ptr<const TriangleSurface> surface,
+               std::shared_ptr<const PointTree> tree, const BodySettings& settings,
+               SolverChoice solver, RunContext context, std::shared_ptr<const NodeFactors> factors,
+               std::shared_ptr<const NodeMarks> held);
 
   Result<StepPlan> look(const BodyInputs& inputs) const override {
     return look_again(inputs, StepPlan(plan_));
@@ -103,9 +104,9 @@ class TriangleBody final : public ElasticBody {
   double contact_share() const override { return 1; }
 
   std::shared_ptr<const TriangleSurface> surface_;
-  PointTree tree_;               // of the surface's nodes
-  std::vector<bool> is_border_;  // of nodes
-  double settling_length_;       // with `Release::Recover` [length]
+  std::shared_ptr<const PointTree> tree_;  // of the surface's nodes
+  std::vector<bool> is_border_;            // of nodes
+  double settling_length_;                 // with `Release::Recover` [length]
   SolverChoice solver_;
   std::vector<Solve> solves_;  // of the patches, in their order
   SolverCounts past_counts_;   // of the plates that are gone

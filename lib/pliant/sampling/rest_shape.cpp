@@ -410,9 +410,7 @@ Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettin
                                         SolverChoice solver, RunContext context) {
   if (shape.rest.rows() == 0) return std::make_unique<DrivenBody>(settings);
   if (shape.surface) {
-    auto tree = PointTree::make(shape.surface->rest, context.should_stop);
-    if (!tree) return fail(tree.error());
-    return std::make_unique<TriangleBody>(shape.surface, *std::move(tree), settings, solver,
+    return std::make_unique<TriangleBody>(shape.surface, shape.tree, settings, solver,
                                           std::move(context), shape.factors, shape.held);
   }
   return std::make_unique<GridBody>(*shape.grid, shape.rest, settings, solver, std::move(context),
@@ -421,7 +419,12 @@ Result<std::unique_ptr<Body>> make_body(const RestShape& shape, const BodySettin
 
 Result<ReservedShape> make_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context) {
-  return ShapeMaker(surface, origin, context).make();
+  auto made = ShapeMaker(surface, origin, context).make();
+  if (!made || !made->shape.surface) return made;
+  auto tree = PointTree::make(made->shape.surface->rest, context.should_stop);
+  if (!tree) return fail(tree.error());
+  made->shape.tree = std::make_shared<const PointTree>(*std::move(tree));
+  return made;
 }
 
 Result<CheckedShape> check_rest_shape(const Surface& surface, const SceneOrigin& origin,

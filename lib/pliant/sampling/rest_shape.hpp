@@ -23,6 +23,7 @@ class Binding;
 class Body;
 class Carriers;
 class ColliderMesh;
+class PointTree;
 struct NodeFactors;
 struct NodeFaces;
 struct TriangleSurface;
@@ -39,6 +40,7 @@ struct RestShape {
   /// The grid of the nodes; none: they are a surface of triangles.
   std::optional<Grid> grid = {};
   std::shared_ptr<const TriangleSurface> surface = {};  ///< null: a grid
+  std::shared_ptr<const PointTree> tree = {};           ///< of the nodes of `surface`
   std::string note = {};  ///< a remark for the author on how the mesh was read; may be empty
 
   /// The faces of the nodes of a grid; null: no force uses their normals, or it is a surface.
