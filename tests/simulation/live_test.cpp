@@ -12,6 +12,7 @@
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/write.hpp"
 #include "support/catch.hpp"
+#include "support/everything.hpp"
 #include "support/sanitized.hpp"
 #include "support/scenes.hpp"
 
@@ -23,97 +24,19 @@ namespace {
 
 constexpr int frame_count = 9;
 
-/// Two surfaces, and forces of every kind, in and without a group, with constant and keyed
-/// channels.
-Scene of_everything() {
-  const auto text = R"(<scene start="-2" end="9" fps="30000/1001">
-    <surface name="sheet"><grid columns="11" rows="12" width="10" depth="10"/>
-      <transform translate="1 0 0" rotate="5 10 15"/><material density="0.02" damping="0.05"/>
-      <tangents su0="0.1" sv1="0.1 0.2 0"/></surface>
-    <surface name="other"><grid columns="9" rows="9" width="8" depth="8"/>
-      <transform><animate attribute="translate"><key frame="-3" value="0 3 0"/>
-        <key frame="9" value="1 2 1"/></animate></transform>
-      <solver dt="0.02" release="recover" startFrame="0" combine="islands"/></surface>
-    <point name="poke" magnitude="400" center="1 0.5 0" deformationRadius="4" forceRadius="4"/>
-    <radial name="swell" deformationRadius="3" forceRadius="3" center="2 1 0">
-      <animate attribute="magnitude"><key frame="1" value="100"/><key frame="6" value="300"/>
-      </animate></radial>
-    <line name="ridge" magnitude="200" from="-2 0.5 0" to="2 0.5 1" direction="0 1 1"
-      deformationRadius="2" forceRadius="2"/>
-    <uniform name="weight" magnitude="-5" deformationRadius="1">
-      <animate attribute="enabled"><key frame="0" value="true"/><key frame="5" value="false"/>
-      </animate></uniform>
-    <vortex name="turn" magnitude="50" center="0 0.5 0" pull="0.5" deformationRadius="3"
-      forceRadius="3"/>
-    <noise name="wind" magnitude="80" frequency="0.5" rate="2" deformationRadius="5"
-      forceRadius="5"/>
-    <inertia name="sway" deformationRadius="3"/>
-    <point name="slide" magnitude="100" deformationRadius="2" forceRadius="2">
-      <path attribute="center" progress="0.25"><waypoint at="-3 0.5 0"/><waypoint at="3 0.5 1"/><waypoint at="0 0 3"/>
-      </path></point>
-    <collider name="ball" friction="0.2" targets="sheet"><sphere radius="1.5"/>
-      <transform><animate attribute="translate"><key frame="-2" value="1 3 0"/><key frame="8" value="1 0.5 1"/></animate>
-      </transform></collider>
-    <collider name="bar" offset="0.05" stick="true" enabled="false"><capsule length="3"/>
-      <transform translate="-2 1 0" rotate="90 0 0"/></collider>
-    <collider name="block"><box size="2 0.5 1" round="0.125"/><transform translate="2 -1.5 1"/></collider>
-    <group name="pair" center="0 0 1" deformationRadius="3">
-      <radial name="left" magnitude="60" center="-1 -1 1" forceRadius="3"/>
-      <noise name="right" magnitude="40" forceRadius="3"/>
-    </group></scene>)";
-  auto scene = parse_scene(text, "scene.xml", "");
-  REQUIRE(scene);
-  return *std::move(scene);
-}
-
-/// The numbers of a channel at a frame; of a switch, 0 or 1.
-std::vector<double> value_at(const NamedChannel& named, int frame) {
-  std::vector<double> value;
-  std::visit(
-      [&](const auto* channel) {
-        if constexpr (std::is_same_v<decltype(channel), const Switch*>) {
-          value.push_back(channel->at(frame) ? 1 : 0);
-        } else {
-          for (const double number : channel->at(frame)) value.push_back(number);
-        }
-      },
-      named.channel);
-  return value;
-}
-
-/// A valid value other than that of the channel at the frame.
-std::vector<double> other_value(const NamedChannel& named, int frame) {
-  std::vector<double> value = value_at(named, frame);
-  for (double& number : value) {
-    if (std::holds_alternative<const Switch*>(named.channel)) {
-      number = 1 - number;
-    } else {
-      number = number == 0 ? 0.0625 * std::abs(frame) : number * (1 + 0.03125 * frame);
-    }
-  }
-  // With release="recover" tangents must stay 0.
-  if (named.path.starts_with("other.s") && named.path.find("scale") == std::string::npos) {
-    for (double& number : value) number = 0;
-  }
-  return value;
-}
-
-std::vector<std::string> paths_of(const Scene& scene) {
-  std::vector<std::string> paths;
-  for (const NamedChannel& named : channels_of(scene)) paths.push_back(named.path);
-  return paths;
+LiveOptions recording(int threads = 1) {
+  LiveOptions options;
+  options.simulation.threads = threads;
+  options.records = true;
+  return options;
 }
 
 /// Plays a live run, which sets the channels for which `is_set(channel, frame)` is true before each
 /// step, and requires that all its frames have the bits of its performance.
 template <class IsSet>
-void check_against_performance(const Scene& scene, int frames, const IsSet& is_set,
-                               int threads = 1) {
-  LiveOptions options;
-  options.simulation.threads = threads;
-  options.records = true;
-  auto live = LiveSimulation::make(scene, options);
+void check_against_performance(Result<LiveSimulation> live, int frames, const IsSet& is_set) {
   REQUIRE(live);
+  const int first = live->frame();
   std::vector<Frame> played;
   for (int k = 0; k < frames; ++k) {
     auto frame = live->positions();
@@ -135,7 +58,7 @@ void check_against_performance(const Scene& scene, int frames, const IsSet& is_s
   played.push_back(live->positions().value());
   const auto performance = live->performance();
   REQUIRE(performance);
-  CHECK(performance->end == scene.start + frames);
+  CHECK(performance->end == first + frames);
   auto simulation = Simulation::make(*performance);
   REQUIRE(simulation);
   for (const Frame& frame : played) {
@@ -156,9 +79,10 @@ TEST_CASE("a live run has the bits of the scene that has its values as keys, for
   for (const std::string& path : paths_of(scene)) {
     CAPTURE(path);
     if (is_sanitized && path.size() % 4 != 0) continue;
-    check_against_performance(scene, frame_count, [&](const std::string& channel, int frame) {
-      return channel == path && (frame == 3 || frame == 4 || frame == 7);
-    });
+    check_against_performance(LiveSimulation::make(scene, recording()), frame_count,
+                              [&](const std::string& channel, int frame) {
+                                return channel == path && (frame == 3 || frame == 4 || frame == 7);
+                              });
   }
 }
 
@@ -166,12 +90,87 @@ TEST_CASE("a live run that sets all channels has the bits of its performance",
           "[simulation][live][threads]") {
   const int every = GENERATE(1, 2, 5);
   const int threads = GENERATE(1, 2);
-  check_against_performance(
-      of_everything(), frame_count,
-      [&](const std::string& channel, int frame) {
-        return (static_cast<int>(channel.size()) + frame) % every == 0;
-      },
-      threads);
+  check_against_performance(LiveSimulation::make(of_everything(), recording(threads)), frame_count,
+                            [&](const std::string& channel, int frame) {
+                              return (static_cast<int>(channel.size()) + frame) % every == 0;
+                            });
+}
+
+namespace {
+
+/// As `of_everything`, with noises whose rates have keys, so that a run from a state may set them.
+Scene with_keyed_rates(int preroll) {
+  Scene scene = of_everything();
+  for (Surface& surface : scene.surfaces) surface.solver.preroll = preroll;
+  for (Force& force : scene.forces) {
+    if (auto* const noise = std::get_if<NoiseChannels>(&force.kind))
+      noise->rate = curve({{-4, 1}, {6, 3}});
+  }
+  return scene;
+}
+
+}  // namespace
+
+TEST_CASE("a run from a state has the bits of its performance, from the scene's start on",
+          "[simulation][live][threads]") {
+  const Scene scene = with_keyed_rates(GENERATE(0, 2));
+  const int from = GENERATE(-2, 0, 3, 9);
+  const std::string state = Simulation::make(scene)->state_bytes(from).value();
+  for (const int every : {1, 3, 1000}) {
+    for (const int threads : {1, 2}) {
+      CAPTURE(from, every, threads);
+      check_against_performance(
+          LiveSimulation::from_state(scene, state, recording(threads)), 4,
+          [&](const std::string& channel, int frame) {
+            // Ahead of the start the noise was summed from the rate there.
+            const bool can_be_set = frame > scene.start || !channel.ends_with(".rate");
+            return can_be_set && (static_cast<int>(channel.size()) + frame) % every == 0;
+          });
+    }
+  }
+}
+
+TEST_CASE("a run from a state goes on as the simulation, if nothing is set", "[simulation][live]") {
+  const Scene scene = of_everything();  // with constant rates
+  auto whole = Simulation::make(scene).value();
+  const int from = GENERATE(-2, 1, 5);
+  auto live =
+      LiveSimulation::from_state(scene, whole.state_bytes(from).value(), recording()).value();
+  CHECK(live.frame() == from);
+  for (int frame = from; frame <= scene.end; ++frame) {
+    CAPTURE(frame);
+    const Frame shown = live.positions().value(), expected = whole.at(frame).value();
+    for (const char* surface : {"sheet", "other"})
+      CHECK(shown.surface(surface).positions() == expected.surface(surface).positions());
+    REQUIRE(live.advance());
+  }
+  Scene longer = scene;
+  longer.end = live.frame();
+  CHECK(live.performance().value() == longer);
+}
+
+TEST_CASE("a run begins only with a state of its scene", "[simulation][live]") {
+  const Scene scene = of_everything();
+  const std::string state = Simulation::make(scene)->state_bytes(4).value();
+  const auto refusal = [](const Result<LiveSimulation>& live) {
+    REQUIRE_FALSE(live);
+    CHECK(live.error().code == ErrorCode::InvalidInput);
+    return live.error().message;
+  };
+  Scene other = scene;
+  other.forces[0].magnitude = 401;
+  CHECK_THAT(refusal(LiveSimulation::from_state(other, state)), Contains("is not the same"));
+  for (const std::string& damaged : {std::string(), state.substr(0, state.size() / 2), state + "x"})
+    CHECK_THAT(refusal(LiveSimulation::from_state(scene, damaged)), Contains("damaged"));
+  other = scene;
+  other.surfaces[0].solver.loop = 5;
+  CHECK_THAT(refusal(LiveSimulation::from_state(other, state)), Contains("has no cycle"));
+  auto live = LiveSimulation::from_state(scene, state).value();
+  const auto refused = live.set("wind.rate", 3);
+  REQUIRE_FALSE(refused);
+  CHECK_THAT(refused.error().message,
+             Contains("wind.rate is 3, but a rate without keys cannot be set in a run from a "
+                      "state: give it a key"));
 }
 
 TEST_CASE("a channel has the value that was set, a pose one frame later", "[simulation][live]") {

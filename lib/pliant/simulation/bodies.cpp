@@ -15,6 +15,7 @@
 #include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/checks/check.hpp"
+#include "pliant/states/state_key.hpp"
 
 namespace pliant {
 namespace {
@@ -220,6 +221,11 @@ Result<void> Bodies::add(const Surface& surface, ReservedShape made) {
   rest_shapes_.push_back(std::move(made.shape));
   shares_.push_back(std::move(made.memory));
   return {};
+}
+
+void Bodies::add_to(SceneStates& states) const {
+  for (std::size_t k = 0; k < bodies_.size(); ++k)
+    states.add(rest_key(rest_shapes_[k], bodies_[k]->settings(), solver_));
 }
 
 std::vector<Error> Bodies::check_maps(int frame) const {

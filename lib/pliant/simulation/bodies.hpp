@@ -54,6 +54,9 @@ class Bodies {
   /// `give_way` may release some and return true; then the surfaces that lacked it try again.
   void step(int frame, SceneStates* states, const std::function<bool()>& give_way);
 
+  /// Adds all surfaces to the states of this scene, in their order.
+  void add_to(SceneStates& states) const;
+
   /// Checks the maps of materials at a frame. Errors: those of `check_maps_at`.
   std::vector<Error> check_maps(int frame) const;
 

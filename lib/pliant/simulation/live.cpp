@@ -25,6 +25,7 @@
 #include "pliant/scene/format/description.hpp"
 #include "pliant/scene/text/text.hpp"
 #include "pliant/simulation/bodies.hpp"
+#include "pliant/states/scene_states.hpp"
 #include "pliant/timeline/checks.hpp"
 
 namespace pliant {
@@ -83,6 +84,20 @@ Result<void> key_rates(Scene& scene) {
           scene.origin.at(force.name, "rate")));
     }
     noise->rate = curve_of<1>({step_key<1>(scene.start, rate)});
+  }
+  return {};
+}
+
+Result<void> check_to_play_live(const Scene& scene) {
+  if (auto sound = check_to_simulate(scene); !sound) return sound;
+  for (const Surface& surface : scene.surfaces) {
+    if (!surface.solver.loop) continue;
+    return fail(scene.origin.located(
+        {ErrorCode::InvalidInput,
+         fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
+                     "is not known before",
+                     surface.name, *surface.solver.loop)},
+        scene.origin.at(surface.name, "loop")));
   }
   return {};
 }
@@ -157,6 +172,7 @@ std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
 /// The bodies at the present frame, and the channels that can be set.
 class LiveSimulation::Run {
  public:
+  /// Requires: `options` are sound.
   Run(Scene scene, const LiveOptions& options)
       : records_(options.records),
         scene_(std::move(scene)),
@@ -166,6 +182,7 @@ class LiveSimulation::Run {
         inputs_(inputs_that_can_be_set(scene_)),
         first_(first_frame_of_run(scene_)),
         frame_(scene_.start) {
+    PLIANT_EXPECTS(options.simulation.threads >= 1 && is_available(options.simulation.solver));
     for (std::size_t k = 0; k < inputs_.size(); ++k) places_.emplace(inputs_[k].path, k);
     const auto is_own = [](const Force& force) {
       return std::holds_alternative<CustomForce>(force.kind);
@@ -175,6 +192,8 @@ class LiveSimulation::Run {
   }
 
   Result<void> make_bodies();
+  Result<void> play_preroll();
+  Result<void> go_to_state(std::string_view state_bytes);
   int frame() const { return frame_; }
   const Scene& scene() const { return scene_; }
   const Bodies& bodies() const { return bodies_; }
@@ -212,7 +231,6 @@ class LiveSimulation::Run {
   RunWatch watch_;
 };
 
-// Plays the preroll too.
 Result<void> LiveSimulation::Run::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
   warnings_of_scene_ = warnings_about(bodies_.rest_shapes(), scene_);
@@ -223,9 +241,23 @@ Result<void> LiveSimulation::Run::make_bodies() {
            warning.kind == RadiusExceeds;
   });
   watch_ = bodies_.watch();
+  return {};
+}
+
+Result<void> LiveSimulation::Run::play_preroll() {
   for (int frame = first_; frame < scene_.start; ++frame) {
     if (auto stepped = step(frame); !stepped) return stepped;
   }
+  return {};
+}
+
+Result<void> LiveSimulation::Run::go_to_state(std::string_view state_bytes) {
+  SceneStates states(scene_, sampling_, nullptr);
+  bodies_.add_to(states);
+  auto found = states.read_checkpoint(state_bytes, bodies_.all());
+  if (!found) return fail(found.error());
+  frame_ = found->frame;
+  bodies_.restore(std::move(found->states));
   return {};
 }
 
@@ -255,6 +287,8 @@ Result<void> LiveSimulation::Run::set(std::string_view channel, std::span<const 
     return refuse("must be 0 or 1");
   }
   if (const auto rule = rule_of_keys(input)) return refuse(*rule);
+  if (input.noise && !std::get<Channel<1>*>(input.channel)->is_animated())
+    return refuse("a rate without keys cannot be set in a run from a state: give it a key");
   // Ahead of the start its time was summed from the value there.
   if (input.noise && frame_ == scene_.start && first_ < frame_)
     return refuse("a rate cannot be set at the first frame, since the preroll began with it");
@@ -424,21 +458,22 @@ Result<Scene> LiveSimulation::Run::performance() const {
 }
 
 Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& options) {
-  const SimulationOptions& run_options = options.simulation;
-  PLIANT_EXPECTS(run_options.threads >= 1 && is_available(run_options.solver));
-  if (auto sound = check_to_simulate(scene); !sound) return fail(sound.error());
-  for (const Surface& surface : scene.surfaces) {
-    if (!surface.solver.loop) continue;
-    return fail(scene.origin.located(
-        {ErrorCode::InvalidInput,
-         fmt::format("{}.loop is {}, but a live run has no cycle: what is set while it plays "
-                     "is not known before",
-                     surface.name, *surface.solver.loop)},
-        scene.origin.at(surface.name, "loop")));
-  }
+  if (auto sound = check_to_play_live(scene); !sound) return fail(sound.error());
   if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
   auto run = std::make_unique<Run>(std::move(scene), options);
-  if (auto made = run->make_bodies(); !made) return fail(made.error());
+  auto made = run->make_bodies();
+  if (made) made = run->play_preroll();
+  if (!made) return fail(made.error());
+  return LiveSimulation(std::move(run));
+}
+
+Result<LiveSimulation> LiveSimulation::from_state(Scene scene, std::string_view state_bytes,
+                                                  const LiveOptions& options) {
+  if (auto sound = check_to_play_live(scene); !sound) return fail(sound.error());
+  auto run = std::make_unique<Run>(std::move(scene), options);
+  auto made = run->make_bodies();
+  if (made) made = run->go_to_state(state_bytes);
+  if (!made) return fail(made.error());
   return LiveSimulation(std::move(run));
 }
 

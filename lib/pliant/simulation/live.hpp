@@ -34,6 +34,13 @@ class LiveSimulation {
   /// loop, which a live run cannot know, and for the rate of a noise beyond 1e150.
   static Result<LiveSimulation> make(Scene scene, const LiveOptions& options = {});
 
+  /// The scene at the frame of a state of it, made by `Simulation::state_bytes`: to record from
+  /// any frame on what was played up to it. `performance` begins at the scene's start all the same.
+  /// The rate of a noise that has no keys is not keyed, and cannot be set. Errors: those of `make`
+  /// and of `Simulation::restore`.
+  static Result<LiveSimulation> from_state(Scene scene, std::string_view state_bytes,
+                                           const LiveOptions& options = {});
+
   LiveSimulation(LiveSimulation&&) noexcept;
   LiveSimulation& operator=(LiveSimulation&&) noexcept;
   ~LiveSimulation();
@@ -45,7 +52,7 @@ class LiveSimulation {
   /// as many numbers as the channel; of a switch, 0 is off and 1 is on. It replaces the channel's
   /// curve, if it has one. Errors, with nothing changed: InvalidInput for an unknown channel, with
   /// the nearest name, another count of numbers, and a number that is out of range or beyond 1e150;
-  /// after a preroll, the rate of a noise at the first frame.
+  /// after a preroll, the rate of a noise at the first frame; from a state, one without keys.
   Result<void> set(std::string_view channel, std::span<const double> value);
   Result<void> set(std::string_view channel, double value);
   Result<void> set(std::string_view channel, const Value<3>& value);

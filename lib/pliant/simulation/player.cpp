@@ -22,9 +22,7 @@ Simulation::Player::Player(Scene scene, const SimulationOptions& options)
 
 Result<void> Simulation::Player::make_bodies() {
   if (auto made = bodies_.make_all(); !made) return made;
-  for (std::size_t k = 0; k < bodies_.size(); ++k) {
-    states_.add(rest_key(bodies_.rest_shapes()[k], bodies_.all()[k]->settings(), bodies_.solver()));
-  }
+  bodies_.add_to(states_);
   watch_ = bodies_.watch();
   return {};
 }
