@@ -59,6 +59,22 @@ TEST_CASE("a shelf keeps what was used last, within its bytes", "[core][shelf]")
   CHECK(shelf.bytes() == 9);
 }
 
+TEST_CASE("what changes often takes the place of its own type and key only", "[core][shelf]") {
+  Shelf shelf(10);
+  const Hash key = hash_of("key"), other = hash_of("other");
+  shelf.keep(key, std::make_shared<const Count>(), 1);
+  keep_word(shelf, other, "one", 2);
+  for (const char* text : {"one", "two", "three"})
+    shelf.keep_instead(key, std::make_shared<const Word>(text), 4);
+  CHECK_FALSE(find_word(shelf, key, "two"));
+  CHECK(find_word(shelf, key, "three"));
+  CHECK(find_word(shelf, other, "one"));
+  CHECK(shelf.find<Count>(key, [](const Count&) { return true; }));
+  CHECK(shelf.bytes() == 7);
+  shelf.keep_instead(key, std::make_shared<const Word>("large"), 11);
+  CHECK(find_word(shelf, key, "three"));
+}
+
 TEST_CASE("several threads use one shelf", "[core][shelf][threads]") {
   Shelf shelf(40);
   std::vector<std::jthread> threads;

@@ -1,6 +1,7 @@
 #include "pliant/core/shelf.hpp"
 
 #include <iterator>
+#include <typeinfo>
 
 namespace pliant {
 
@@ -22,10 +23,18 @@ void Shelf::use(const Hash& key, const Item& item) {
   }
 }
 
-void Shelf::keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes) {
-  if (bytes > max_bytes_) return;
-  Entries gone;  // destroyed without the lock
-  const std::lock_guard lock(mutex_);
+// Takes an entry off the shelf.
+Shelf::Entries Shelf::take(Places::iterator place) {
+  const Entries::iterator entry = place->second;
+  by_key_.erase(place);
+  bytes_ -= entry->bytes;
+  Entries taken;
+  taken.splice(taken.begin(), entries_, entry);
+  return taken;
+}
+
+void Shelf::put(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes,
+                Entries& gone) {
   ++kept_;
   entries_.push_front({key, std::move(item), bytes});
   by_key_.emplace(number_of(key), entries_.begin());
@@ -33,10 +42,29 @@ void Shelf::keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t 
     const auto oldest = std::prev(entries_.end());
     auto found = by_key_.lower_bound(number_of(oldest->key));
     while (found->second != oldest) ++found;
-    by_key_.erase(found);
-    bytes_ -= oldest->bytes;
-    gone.splice(gone.begin(), entries_, oldest);
+    gone.splice(gone.begin(), take(found));
   }
+}
+
+void Shelf::keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes) {
+  if (bytes > max_bytes_) return;
+  Entries gone;  // destroyed without the lock
+  const std::lock_guard lock(mutex_);
+  put(key, std::move(item), bytes, gone);
+}
+
+void Shelf::keep_instead(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes) {
+  if (bytes > max_bytes_) return;
+  Entries gone;  // destroyed without the lock
+  const std::lock_guard lock(mutex_);
+  const Item& kept = *item;
+  const auto [first, last] = by_key_.equal_range(number_of(key));
+  for (auto place = first; place != last;) {
+    const auto here = place++;
+    const Item& other = *here->second->item;
+    if (typeid(other) == typeid(kept)) gone.splice(gone.begin(), take(here));
+  }
+  put(key, std::move(item), bytes, gone);
 }
 
 std::size_t Shelf::kept() const {

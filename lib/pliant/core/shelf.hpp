@@ -46,6 +46,9 @@ class Shelf {
   /// Keeps an item, in place of those used least. `bytes`: those that it takes.
   void keep(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes);
 
+  /// The same, also in place of all of its type that have the key: for what changes often.
+  void keep_instead(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes);
+
   std::size_t bytes() const;  ///< that all items take [bytes]
   std::size_t kept() const;   ///< how many items it was given to keep so far
 
@@ -57,17 +60,20 @@ class Shelf {
   };
   using Entries = std::list<Entry>;
   using Number = std::pair<std::uint64_t, std::uint64_t>;
+  using Places = std::multimap<Number, Entries::iterator>;
 
   static Number number_of(const Hash& key) { return {key.high, key.low}; }
   std::vector<std::shared_ptr<const Item>> items_of(const Hash& key) const;
   void use(const Hash& key, const Item& item);
+  Entries take(Places::iterator place);
+  void put(const Hash& key, std::shared_ptr<const Item> item, std::size_t bytes, Entries& gone);
 
   mutable std::mutex mutex_;
   std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::size_t kept_ = 0;
   Entries entries_;  // the last used one first
-  std::multimap<Number, Entries::iterator> by_key_;
+  Places by_key_;
 };
 
 }  // namespace pliant

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "pliant/sampling/shape_shelf.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/checks/check.hpp"
+#include "pliant/scene/checks/sound_things.hpp"
 #include "pliant/states/state_key.hpp"
 
 namespace pliant {
@@ -100,9 +102,13 @@ tl::unexpected<Error> interrupted_at_start() {
 }
 
 Result<void> Bodies::make_all() {
-  std::vector<Error> errors = check_channels(scene_, {}, context_.should_stop);
+  const SoundThings known(scene_, context_.shelf);
+  std::vector<Error> errors = check_channels(
+      scene_, [&](const std::string& name, std::string_view) { return !known.contain(name); },
+      context_.should_stop);
   const bool are_sound = errors.empty();
   if (!are_sound && errors.front().code == ErrorCode::Interrupted) return interrupted_at_start();
+  if (are_sound) known.add_others();
   std::vector<ReservedShape> shapes;
   for (const Surface& surface : scene_.surfaces) {
     if (context_.is_stopped()) return interrupted_at_start();
