@@ -2,6 +2,7 @@
 
 // Everything that a program needs to load or build a scene, simulate it and write it.
 
+#include "pliant/core/shelf.hpp"
 #include "pliant/document/document.hpp"
 #include "pliant/document/save_scene.hpp"
 #include "pliant/feedback/contact_summary.hpp"

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "support/everything.hpp"
 #include "support/sanitized.hpp"
 #include "support/scenes.hpp"
+#include "support/scratch_folder.hpp"
 
 // A shelf that simulations of edited scenes share changes no bit and no error.
 
@@ -100,4 +102,70 @@ TEST_CASE("an edit that breaks a rule is refused as without a shelf, and can be 
     CHECK(told(sound, shared) == told(sound));
   }
   CHECK(refused > 7);
+}
+
+TEST_CASE("an edit of a force makes no shape anew", "[simulation][shelf]") {
+  Shelf shelf(std::size_t{1} << 30);
+  const SimulationOptions shared{.shelf = &shelf};
+  Surface surface = sheet("sheet");
+  surface.shape = make_mesh(std::get<GridSheet>(surface.shape));
+  if (GENERATE(false, true)) surface.reading.uv = UvReading::Surface;
+  Scene s = scene({surface}, {poke("poke", {0, 0, 0}), poke("other", {3, 0, 0})}, 4);
+  REQUIRE(told(s, shared) == told(s));
+  const std::size_t before = shelf.kept();
+  std::get<PointChannels>(s.forces[0].kind).center = Value<3>{1, 0, 0};
+  REQUIRE(Simulation::make(s, shared));
+  CHECK(shelf.kept() == before + 1);  // that the force is sound
+  REQUIRE(Simulation::make(s, shared));
+  CHECK(shelf.kept() == before + 1);
+  // A mesh in memory is another one if a number of it differs.
+  std::get<Mesh>(s.surfaces[0].shape).positions(60, 1) += 0.5;
+  CHECK(told(s, shared) == told(s));
+}
+
+TEST_CASE("a file that changes is read again, whatever the shelf has", "[simulation][shelf]") {
+  const ScratchFolder folder;
+  Shelf shelf(std::size_t{1} << 30);
+  const SimulationOptions shared{.shelf = &shelf};
+  const auto write_mesh = [&](double height) {
+    std::string text;
+    for (int k = 0; k < 25; ++k)
+      text += fmt::format("v {} {} {}\nvt {} {}\n", k % 5, k == 12 ? height : 0, k / 5, k % 5 / 4.0,
+                          k / 5 / 4.0);
+    for (int j = 0; j < 4; ++j) {
+      for (int i = 0; i < 4; ++i) {
+        const int first = 5 * j + i + 1;
+        text += fmt::format("f {0}/{0} {1}/{1} {2}/{2} {3}/{3}\n", first, first + 1, first + 6,
+                            first + 5);
+      }
+    }
+    folder.write("mesh.obj", text);
+  };
+  const auto write_ball = [&](double size) {
+    folder.write("ball.obj", fmt::format("v {0} {0} {0}\nv {0} -{0} -{0}\nv -{0} {0} -{0}\n"
+                                         "v -{0} -{0} {0}\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n",
+                                         size));
+  };
+  Surface surface = sheet("mesh");
+  surface.shape = MeshFile{.path = folder.file("mesh.obj").string()};
+  Scene s = scene({surface}, {poke("p", {2, 0, 2})});
+  Collider ball{.name = "ball"};
+  ball.shape = ClosedMesh{.mesh = {.path = folder.file("ball.obj").string()}};
+  ball.transform.translate = Value<3>{2, 0.5, 2};
+  s.colliders.push_back(ball);
+  std::vector<std::vector<std::string>> seen;
+  const auto look = [&] {
+    seen.push_back(told(s, shared));
+    CHECK(seen.back() == told(s));
+  };
+  write_mesh(0);
+  write_ball(0.3);
+  look();
+  write_mesh(0.25);
+  look();
+  write_ball(0.4);
+  look();
+  std::filesystem::remove(folder.file("mesh.obj"));
+  look();
+  for (std::size_t k = 1; k < seen.size(); ++k) CHECK(seen[k] != seen[k - 1]);
 }

@@ -13,6 +13,7 @@
 #include "pliant/files/read_mesh.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/memory.hpp"
+#include "pliant/sampling/read_files.hpp"
 #include "pliant/sampling/rest_shape.hpp"
 #include "pliant/scene/checks/check.hpp"
 
@@ -115,10 +116,9 @@ class ColliderMeshReader {
   MemoryShare& memory_;
 };
 
-// All that the mesh of a collider is made from, besides its files.
+// All that the mesh of a collider is made from, besides its shape and files.
 struct MeshValues {
-  std::string name, root, path, object, mesh_root;
-  ShapeCache cache;
+  std::string name, root;
   bool is_scaled;  // by a channel that is animated
   std::size_t surfaces;
   double fps;
@@ -128,15 +128,10 @@ struct MeshValues {
 };
 
 MeshValues values_of(const Collider& collider, const Scene& scene, std::size_t surfaces) {
-  const auto& [mesh, cache, made] = std::get<ClosedMesh>(collider.shape);
   const FrameSpan used = sampled_frames(scene);
-  const bool moves = !cache.is_empty();
+  const bool moves = !std::get<ClosedMesh>(collider.shape).cache.is_empty();
   return {.name = collider.name,
           .root = scene.origin.root,
-          .path = mesh.path,
-          .object = mesh.object,
-          .mesh_root = mesh.root,
-          .cache = cache,
           .is_scaled = collider.transform.scale.is_animated(),
           .surfaces = surfaces,
           .fps = moves ? scene.fps : 0,
@@ -147,6 +142,8 @@ MeshValues values_of(const Collider& collider, const Scene& scene, std::size_t s
 
 struct ColliderMeshItem final : Shelf::Item {
   MeshValues values = {};
+  ClosedMesh closed = {};
+  ReadFiles files;
   std::shared_ptr<const ColliderMesh> mesh;
   std::size_t bytes = 0;
 };
@@ -209,22 +206,26 @@ Result<std::shared_ptr<const ColliderMesh>> find_collider_mesh(const Collider& c
                                                                const RunContext& context,
                                                                MemoryShare& memory) {
   const std::size_t surfaces = count_surfaces(collider, scene);
-  // A mesh made by a program is not compared.
-  if (!context.shelf || std::get<ClosedMesh>(collider.shape).made)
-    return ColliderMesh::make(collider, scene, surfaces, context, memory);
+  if (!context.shelf) return ColliderMesh::make(collider, scene, surfaces, context, memory);
   const MeshValues values = values_of(collider, scene, surfaces);
+  const auto& closed = std::get<ClosedMesh>(collider.shape);
   const Hash key = hash_of(collider.name);
-  const auto found = context.shelf->find<ColliderMeshItem>(
-      key, [&](const ColliderMeshItem& one) { return one.values == values; });
+  const auto found = context.shelf->find<ColliderMeshItem>(key, [&](const ColliderMeshItem& one) {
+    return one.values == values && one.closed == closed && one.files.are_unchanged();
+  });
   // Making it tells what does not fit.
   if (found && memory.try_resize(found->bytes)) return found->mesh;
+  ReadFiles files(inputs_of_collider(collider, scene.origin, context.should_stop));
   auto made = ColliderMesh::make(collider, scene, surfaces, context, memory);
   if (made && !found) {
     auto item = std::make_shared<ColliderMeshItem>();
     item->values = values;
+    item->closed = closed;
+    item->files = std::move(files);
     item->mesh = *made;
     item->bytes = memory.bytes();
-    context.shelf->keep(key, std::move(item), memory.bytes());
+    const std::size_t own = closed.made ? bytes_of(*closed.made) : 0;
+    context.shelf->keep(key, std::move(item), memory.bytes() + own);
   }
   return made;
 }

@@ -5,10 +5,8 @@
 namespace pliant {
 
 /// As `make_rest_shape`, but a copy of the shape of the same surface if the context's shelf has it,
-/// so that simulations which share a shelf read a mesh, and find its grid, once. Otherwise the new
-/// one is kept there, unless a program made the mesh. Errors: as there.
-///
-/// Requires: the files of the meshes and maps do not change while the shelf lives.
+/// so that simulations which share a shelf read a mesh, and find its grid, once. Otherwise, and if
+/// a file of it has changed since, the new one is kept there. Errors: as there.
 Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context);
 

@@ -12,50 +12,94 @@
 
 namespace pliant {
 
-std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_stop) {
-  std::vector<SceneInput> inputs;
-  std::set<std::filesystem::path> seen;
-  const auto add = [&](std::filesystem::path file, std::string_view role, const std::string& root) {
-    const bool is_new = seen.insert(file).second;
-    if (is_new) inputs.push_back({std::move(file), role, root});
+namespace {
+
+// Files, each once.
+class Inputs {
+ public:
+  Inputs(const std::string& root, const StopRequest& should_stop)
+      : root_(root), should_stop_(should_stop) {}
+
+  bool add(std::filesystem::path file, std::string_view role, const std::string& root) {
+    const bool is_new = seen_.insert(file).second;
+    if (is_new) inputs_.push_back({std::move(file), role, root});
     return is_new;
-  };
-  const std::string& root = scene.origin.root;
-  if (!scene.origin.file.empty()) add(scene.origin.file, "the scene", {});
-  if (scene.origin.sources) {
-    for (const SourceMap::Source& source : scene.origin.sources->sources()) {
-      if (source.include.is_known()) add(source.file, "a file that the scene includes", root);
-    }
   }
-  const auto add_mesh = [&](const MeshFile& mesh) {
-    if (!add(mesh.path, "a mesh of the scene", root)) return;
-    const auto opened = OpenFile::open(mesh.path, root);
+
+  void add_cache(const ShapeCache& cache) {
+    if (!cache.path.empty()) add(cache.path, "a cache of the scene", root_);
+  }
+
+  void add_mesh(const MeshFile& mesh) {
+    if (!add(mesh.path, "a mesh of the scene", root_)) return;
+    const auto opened = OpenFile::open(mesh.path, root_);
     if (!opened) return;
-    for (auto& file : mesh_references(*opened, mesh.root, should_stop))
+    for (auto& file : mesh_references(*opened, mesh.root, should_stop_))
       add(std::move(file), "a file that a mesh of the scene refers to", mesh.root);
-  };
-  const auto add_cache = [&](const ShapeCache& cache) {
-    if (!cache.path.empty()) add(cache.path, "a cache of the scene", root);
-  };
-  for (const Surface& surface : scene.surfaces) {
-    if (is_stopped(should_stop)) break;
-    add_cache(surface.cache);
+  }
+
+  void add_shape(const Surface& surface) {
     for (const MaterialMap& map : surface.maps) {
-      if (!map.file.empty()) add(map.file, "a map of the scene", root);
+      if (!map.file.empty()) add(map.file, "a map of the scene", root_);
     }
     for (const Hold& hold : surface.holds) {
-      if (!hold.file.empty()) add(hold.file, "a map of the scene", root);
+      if (!hold.file.empty()) add(hold.file, "a map of the scene", root_);
     }
     if (const auto* const mesh = std::get_if<MeshFile>(&surface.shape)) add_mesh(*mesh);
   }
-  for (const Collider& collider : scene.colliders) {
-    if (is_stopped(should_stop)) break;
+
+  void add_collider(const Collider& collider) {
     const auto* const closed = std::get_if<ClosedMesh>(&collider.shape);
-    if (!closed) continue;
+    if (!closed) return;
     add_cache(closed->cache);
     if (!closed->made) add_mesh(closed->mesh);
   }
-  return inputs;
+
+  std::vector<SceneInput> take() { return std::move(inputs_); }
+
+ private:
+  const std::string& root_;
+  const StopRequest& should_stop_;
+  std::vector<SceneInput> inputs_;
+  std::set<std::filesystem::path> seen_;
+};
+
+}  // namespace
+
+std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_stop) {
+  const std::string& root = scene.origin.root;
+  Inputs inputs(root, should_stop);
+  if (!scene.origin.file.empty()) inputs.add(scene.origin.file, "the scene", {});
+  if (scene.origin.sources) {
+    for (const SourceMap::Source& source : scene.origin.sources->sources()) {
+      if (source.include.is_known())
+        inputs.add(source.file, "a file that the scene includes", root);
+    }
+  }
+  for (const Surface& surface : scene.surfaces) {
+    if (is_stopped(should_stop)) break;
+    inputs.add_cache(surface.cache);
+    inputs.add_shape(surface);
+  }
+  for (const Collider& collider : scene.colliders) {
+    if (is_stopped(should_stop)) break;
+    inputs.add_collider(collider);
+  }
+  return inputs.take();
+}
+
+std::vector<SceneInput> inputs_of_shape(const Surface& surface, const SceneOrigin& origin,
+                                        const StopRequest& should_stop) {
+  Inputs inputs(origin.root, should_stop);
+  inputs.add_shape(surface);
+  return inputs.take();
+}
+
+std::vector<SceneInput> inputs_of_collider(const Collider& collider, const SceneOrigin& origin,
+                                           const StopRequest& should_stop) {
+  Inputs inputs(origin.root, should_stop);
+  inputs.add_collider(collider);
+  return inputs.take();
 }
 
 std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,

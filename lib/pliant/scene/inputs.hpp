@@ -24,6 +24,12 @@ struct SceneInput {
 /// files is read to find their names. Fewer if the caller wants it to stop.
 std::vector<SceneInput> inputs_of(const Scene& scene, const StopRequest& should_stop = {});
 
+/// The same of a surface's rest shape, without its cache, and of a collider.
+std::vector<SceneInput> inputs_of_shape(const Surface& surface, const SceneOrigin& origin,
+                                        const StopRequest& should_stop = {});
+std::vector<SceneInput> inputs_of_collider(const Collider& collider, const SceneOrigin& origin,
+                                           const StopRequest& should_stop = {});
+
 /// A scene's file and those that it includes, each once, existing or not, also if there is a
 /// problem with them. `root` as in `load_scene`.
 std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
