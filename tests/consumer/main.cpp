@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <span>
 
 #include <pliant/pliant.hpp>
 #include <pliant/timeline/edit/edit.hpp>
@@ -22,21 +23,24 @@ int main() {
   poke.deformation_radius = 4;
   poke.force_radius = 2;
 
-  // A wave that moves along x. The functions depend only on position and time, so any thread may
-  // call them.
+  // A wave that moves along x: a function of one position, and one of many. They depend only on
+  // position and time, so any thread may call them.
   pliant::Force wave;
   wave.name = "wave";
   wave.magnitude = 300;
   wave.deformation_radius = 100;
   wave.force_radius = 3;
   wave.falloff = pliant::Falloff::Smooth;
-  wave.kind = pliant::CustomForce{
-      .distance =
-          [](const pliant::Vector3d& p, const pliant::ForceTime& time) {
-            return std::abs(p.x() + 5 - 20 * time.seconds);  // to its crest
-          },
-      .unit_force = [](const pliant::Vector3d&,
-                       const pliant::ForceTime&) { return pliant::Vector3d(0, 1, 0); }};
+  wave.kind =
+      pliant::CustomForce{.distance =
+                              [](const pliant::Vector3d& p, const pliant::ForceTime& time) {
+                                return std::abs(p.x() + 5 - 20 * time.seconds);  // to its crest
+                              },
+                          .unit_force =
+                              [](std::span<const pliant::Vector3d>, const pliant::ForceTime&,
+                                 std::span<pliant::Vector3d> forces) {
+                                for (pliant::Vector3d& force : forces) force = {0, 1, 0};
+                              }};
 
   pliant::Scene scene;
   scene.end = 12;

@@ -76,8 +76,8 @@ struct Move {
       return rotation.transpose() * (p - translation);
     };
     return SampledCustomForce{
-        [=](const Vector3d& p) { return f.distance(back(p)); },
-        [=, *this](const Vector3d& p) -> Vector3d { return rotation * f.unit_force(back(p)); }};
+        [=](const Vector3d& p) { return distance(f, back(p)); },
+        [=, *this](const Vector3d& p) -> Vector3d { return rotation * unit_force(f, back(p)); }};
   }
 };
 

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
 #include "pliant/core/field.hpp"
 #include "pliant/forces/force.hpp"
 
@@ -34,6 +38,25 @@ BatchNumbers distances(const ForceKind& force, const Batch& points);
 /// force.force_radius > 0.
 void add_forces(const SampledForce& force, const Batch& points, const Batch* normals, int node,
                 int first, Batch& sums);
+
+/// The most positions that a program's function is asked for at once: this bounds the memory.
+inline constexpr std::size_t most_asked = std::size_t{1} << 16U;
+
+/// Whether a force is asked for up to `most_asked` positions at once, and not for a batch: if a
+/// program's functions are of many positions.
+inline bool takes_many(const ForceKind& force) {
+  const auto* const own = std::get_if<SampledCustomForce>(&force);
+  return own && own->is_of_many;
+}
+
+inline std::size_t asked_at_once(const ForceKind& force) {
+  return takes_many(force) ? most_asked : batch_size;
+}
+
+/// `force_on` at each of `points`, of a program's own force: one call of each of its functions.
+/// `normals`: of these nodes; empty unless `uses_normals`. Requires: force.force_radius > 0.
+std::vector<Vector3d> own_forces(const SampledForce& force, std::span<const Vector3d> points,
+                                 std::span<const Vector3d> normals);
 
 /// A lower bound of `distance`, rounding included, for every position whose components are between
 /// those of `low` and `high`. For a program's own function the bound is 0.

@@ -178,11 +178,17 @@ struct PressureKernel : AroundCenter {
 };
 inline PressureKernel kernel(const PressureForce& force) { return {{force.center}}; }
 
+template <class Value>
+Value answer(const PositionFunction<Value>& function, const Vector3d& p, Value value) {
+  function({&p, 1}, {&value, 1});
+  return value;
+}
+
 struct CustomKernel {
   const SampledCustomForce& force;
 
-  double distance(const Triple& p) const { return force.distance(p); }
-  Triple unit_force(const Triple& p) const { return force.unit_force(p); }
+  double distance(const Triple& p) const { return answer(force.distance, p, 0.0); }
+  Triple unit_force(const Triple& p) const { return answer(force.unit_force, p, Vector3d()); }
   double least_distance(const Triple&, const Triple&) const { return 0; }
 };
 inline CustomKernel kernel(const SampledCustomForce& force) { return {force}; }
@@ -225,6 +231,25 @@ BatchNumbers distances_from(const Kernel& kind, const Batch& points) {
   return numbers;
 }
 
+// The first vectors of a batch, for a program's functions.
+struct Places {
+  Places(const Batch& batch, int size) : count(static_cast<std::size_t>(size)) {
+    for (int k = 0; k < size; ++k) at[k] = batch.at(k);
+  }
+
+  std::span<const Vector3d> span() const { return {at, count}; }
+
+  Vector3d at[batch_size];
+  std::size_t count;
+};
+
+BatchNumbers distances_from(const CustomKernel& kind, const Batch& points) {
+  BatchNumbers numbers;
+  const Places places(points, points.count);
+  kind.force.distance(places.span(), {numbers.of, places.count});
+  return numbers;
+}
+
 // Replaces every distance by magnitude x falloff.
 void fade(const SampledForce& force, std::span<double> distances) {
   const double magnitude = force.magnitude, radius = force.force_radius;
@@ -245,6 +270,22 @@ template <class Kernel>
 Triple unit_force_along(const Kernel& kind, const Triple& p, const Triple& normal) {
   if constexpr (std::is_same_v<Kernel, PressureKernel>) return normal;
   return dot(normal, kind.unit_force(p)) * normal;
+}
+
+// `own_forces`. `strengths` has room for as many numbers.
+void find_own_forces(const SampledForce& force, std::span<const Vector3d> points,
+                     std::span<const Vector3d> normals, std::span<double> strengths,
+                     std::span<Vector3d> forces) {
+  const auto& own = std::get<SampledCustomForce>(force.kind);
+  own.distance(points, strengths);
+  fade(force, strengths);
+  own.unit_force(points, forces);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    const Triple unit = forces[k];
+    const Triple pushing =
+        force.is_along_normal ? dot(normals[k], unit) * Triple(normals[k]) : unit;
+    forces[k] = strengths[k] * pushing;
+  }
 }
 
 // Magnitude x falloff of a force whose distance is 0 everywhere.
@@ -313,6 +354,20 @@ BatchNumbers distances(const ForceKind& force, const Batch& points) {
 
 void add_forces(const SampledForce& force, const Batch& points, const Batch* normals, int node,
                 int first, Batch& sums) {
+  if (is_own(force)) {
+    const Places places(points, points.count);
+    const Places sides(normals ? *normals : points, normals ? points.count : 0);
+    BatchNumbers strengths;
+    Vector3d forces[batch_size];
+    find_own_forces(force, places.span(), sides.span(), {strengths.of, places.count},
+                    {forces, places.count});
+    for (int k = 0; k < points.count; ++k) {
+      sums.x[first + k] += forces[k].x();
+      sums.y[first + k] += forces[k].y();
+      sums.z[first + k] += forces[k].z();
+    }
+    return;
+  }
   if (uses_normals(force) || vectors_of_nodes(force)) {
     for (int k = 0; k < points.count; ++k) {
       const Vector3d normal = normals ? normals->at(k) : Vector3d(Vector3d::Zero());
@@ -336,6 +391,14 @@ void add_forces(const SampledForce& force, const Batch& points, const Batch* nor
       z[k] += strength.of[k] * unit.z;
     }
   });
+}
+
+std::vector<Vector3d> own_forces(const SampledForce& force, std::span<const Vector3d> points,
+                                 std::span<const Vector3d> normals) {
+  std::vector<double> strengths(points.size());
+  std::vector<Vector3d> forces(points.size());
+  find_own_forces(force, points, normals, strengths, forces);
+  return forces;
 }
 
 double least_distance(const ForceKind& force, const Vector3d& low, const Vector3d& high) {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -9,6 +8,7 @@
 
 #include "pliant/core/field.hpp"
 #include "pliant/forces/falloff.hpp"
+#include "pliant/forces/position_function.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant {
@@ -113,8 +113,9 @@ struct SampledCustomForce {
   /// None: a program identifies its functions by `CustomForce::key`.
   std::tuple<> values() const { return {}; }
 
-  std::function<double(const Vector3d& p)> distance;
-  std::function<Vector3d(const Vector3d& p)> unit_force;
+  PositionFunction<double> distance;
+  PositionFunction<Vector3d> unit_force;
+  bool is_of_many = true;  ///< whether the program's functions are, so that few calls are best
 };
 
 using ForceKind = std::variant<PointForce, RadialForce, LineForce, UniformForce, VortexForce,
@@ -137,6 +138,11 @@ struct SampledForce {
 /// Whether the force on a node depends on its normal.
 inline bool uses_normals(const SampledForce& force) {
   return force.is_along_normal || std::holds_alternative<PressureForce>(force.kind);
+}
+
+/// Whether a program's own functions compute the force.
+inline bool is_own(const SampledForce& force) {
+  return std::holds_alternative<SampledCustomForce>(force.kind);
 }
 
 /// A sphere that selects a region and pushes nothing, as a group does. The forces in the group have

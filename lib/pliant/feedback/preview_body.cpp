@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <variant>
 
@@ -175,10 +176,11 @@ double PreviewBody::shown_peak(const Transform& transform) const {
 std::pair<double, double> PreviewBody::distances(const BodyInputs& inputs,
                                                  const SampledForce& force) const {
   const Field nodes = to_world(inputs.transform, inputs.shape ? *inputs.shape : shape_.rest);
+  std::vector<int> all(static_cast<std::size_t>(nodes.rows()));
+  std::iota(all.begin(), all.end(), 0);
   double nearest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index node = 0; node < nodes.rows(); ++node) {
-    nearest = std::min(nearest, distance(force.kind, nodes.row(node).transpose()));
-  }
+  for (const double each : PlacedNodes(nodes).distances(all, force.kind))
+    nearest = std::min(nearest, each);
   const Vector3d middle =
       0.5 * (nodes.colwise().minCoeff() + nodes.colwise().maxCoeff()).transpose();
   return {nearest, distance(force.kind, middle)};

@@ -3,6 +3,16 @@
 #include <algorithm>
 
 namespace pliant {
+namespace {
+
+// Calls f(first, part) for the parts of `nodes`, of up to `size` each.
+template <class F>
+void for_each_part(std::span<const int> nodes, std::size_t size, const F& f) {
+  for (std::size_t first = 0; first < nodes.size(); first += size)
+    f(first, nodes.subspan(first, std::min(size, nodes.size() - first)));
+}
+
+}  // namespace
 
 PlacedNodes::PlacedNodes(const Field& positions, const Transform& transform,
                          const std::vector<double>* densities, const NodeFaces* faces)
@@ -46,6 +56,44 @@ Batch PlacedNodes::batch(std::span<const int> nodes) const {
     batch.x[k] = p[0], batch.y[k] = p[1], batch.z[k] = p[2];
   }
   return batch;
+}
+
+std::vector<Vector3d> PlacedNodes::places_of(std::span<const int> nodes) const {
+  std::vector<Vector3d> places;
+  places.reserve(nodes.size());
+  for (const int node : nodes) places.push_back(at(node));
+  return places;
+}
+
+std::vector<double> PlacedNodes::distances(std::span<const int> nodes, const ForceKind& force,
+                                           std::vector<double> reuse) const {
+  reuse.resize(nodes.size());
+  const std::span<double> found = reuse;
+  const auto* const own = takes_many(force) ? &std::get<SampledCustomForce>(force) : nullptr;
+  for_each_part(nodes, asked_at_once(force), [&](std::size_t first, const auto& part) {
+    if (own) return own->distance(places_of(part), found.subspan(first, part.size()));
+    const BatchNumbers numbers = pliant::distances(force, batch(part));
+    std::copy_n(numbers.of, part.size(), found.data() + first);
+  });
+  return reuse;
+}
+
+std::vector<Vector3d> PlacedNodes::loads_on(std::span<const int> nodes,
+                                            const SampledForce& force) const {
+  std::vector<Vector3d> loads;
+  loads.reserve(nodes.size());
+  if (!is_own(force)) {
+    for (const int node : nodes) loads.push_back(load_on(node, force));
+    return loads;
+  }
+  for_each_part(nodes, asked_at_once(force.kind), [&](std::size_t, const auto& part) {
+    std::vector<Vector3d> normals;
+    if (uses_normals(force))
+      for (const int node : part) normals.push_back(normal(node));
+    const std::vector<Vector3d> found = own_forces(force, places_of(part), normals);
+    loads.insert(loads.end(), found.begin(), found.end());
+  });
+  return loads;
 }
 
 Vector3d PlacedNodes::load_on(int node, const SampledForce& force) const {

@@ -39,17 +39,27 @@ class PlacedNodes {
   /// The same for any nodes.
   Batch batch(std::span<const int> nodes) const;
 
+  /// The distances of nodes from a force. Of a program's own, one call for `asked_at_once`.
+  std::vector<double> distances(std::span<const int> nodes, const ForceKind& force,
+                                std::vector<double> reuse = {}) const;
+
   /// The normal of a node, world; of length 1 or 0. Requires: there are faces.
   Vector3d normal(int node) const { return normal_at(*faces_, *positions_, to_normals_, node); }
 
   /// The force on a node [length b/uv^4]. Requires: force.force_radius > 0; faces if it uses them.
   Vector3d load_on(int node, const SampledForce& force) const;
 
+  /// The same on each of `nodes`. Of a program's own, one call of each function for
+  /// `asked_at_once`.
+  std::vector<Vector3d> loads_on(std::span<const int> nodes, const SampledForce& force) const;
+
   /// Adds `load_on` of `count` nodes from node `first` on to `sums`, from index `place` on.
   /// Requires: as for `batch` and `load_on`.
   void add_loads(int first, int count, const SampledForce& force, int place, Batch& sums) const;
 
  private:
+  std::vector<Vector3d> places_of(std::span<const int> nodes) const;
+
   // Whether the force on a node is multiplied by the factor of its density.
   bool is_weighted(const SampledForce& force) const {
     return densities_ && std::holds_alternative<InertiaForce>(force.kind);

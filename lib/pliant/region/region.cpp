@@ -50,22 +50,37 @@ void list_forces(Selection& selection) {
   }
 }
 
-// Calls f(load) with this force's load on each interior node in its box, until f returns false.
+// Calls f(load) with this force's load on each interior node in its box, until f returns false. The
+// loads of a program's own force are computed for `at_once` nodes, and for more each time.
 template <class F>
 void visit_loads(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force,
-                 const Box& box, std::span<const Patch> patches, const F& f) {
+                 const Box& box, std::span<const Patch> patches, std::size_t at_once, const F& f) {
   bool goes_on = true;
+  std::vector<int> asked;
+  const auto ask = [&] {
+    const std::vector<Vector3d> loads = nodes.loads_on(asked, force);
+    goes_on = std::ranges::all_of(loads, f);
+    asked.clear();
+    at_once = std::min(32 * at_once, most_asked);
+  };
   for (const Patch& patch : patches) {
     for_each_shared(grid, patch.box, box, [&](const Box& inside) {
       for (int j = inside.j0; j <= inside.j1 && goes_on; ++j) {
         for (int i = inside.i0; i <= inside.i1 && goes_on; ++i) {
           if (!patch.holds(i, j)) continue;
-          goes_on = f(nodes.load_on(grid.node_round(i, j), force));
+          const int node = grid.node_round(i, j);
+          if (is_own(force)) {
+            asked.push_back(node);
+            if (asked.size() == at_once) ask();
+          } else {
+            goes_on = f(nodes.load_on(node, force));
+          }
         }
       }
     });
     if (!goes_on) return;
   }
+  if (!asked.empty()) ask();
 }
 
 // The box of the nodes found so far, in an open grid.
@@ -77,12 +92,12 @@ class OpenReach {
   bool covers(const Box& nodes) const { return holds(box_, nodes); }
 
   // Extends it by those nodes of a row, from (i,j) on, whose distance is less than the radius.
-  void include_near(const BatchNumbers& distance, int count, double radius, int i, int j) {
+  void include_near(const double* distance, int count, double radius, int i, int j) {
     int first = 0;
-    while (first < count && !(distance.of[first] < radius)) ++first;
+    while (first < count && !(distance[first] < radius)) ++first;
     if (first == count) return;
     int last = count - 1;
-    while (!(distance.of[last] < radius)) --last;
+    while (!(distance[last] < radius)) --last;
     box_.include({i + first, i + last, j, j});
   }
 
@@ -99,9 +114,9 @@ class ClosedReach {
   Box box() const { return lines_.box(); }
   bool covers(const Box& nodes) const { return lines_.holds(nodes); }
 
-  void include_near(const BatchNumbers& distance, int count, double radius, int i, int j) {
+  void include_near(const double* distance, int count, double radius, int i, int j) {
     for (int k = 0; k < count; ++k) {
-      if (distance.of[k] < radius) lines_.include(i + k, j);
+      if (distance[k] < radius) lines_.include(i + k, j);
     }
   }
 
@@ -127,7 +142,7 @@ class Selecting {
 
  private:
   void run() {
-    if (std::holds_alternative<SampledCustomForce>(force_.kind)) {
+    if (is_own(force_)) {
       ask_all();
       return;
     }
@@ -144,10 +159,18 @@ class Selecting {
   // In the order of the nodes: the first unsound answer is the one that is reported.
   void ask_all() {
     const Grid& grid = tiles_.grid();
-    for (int j = 0; j < grid.rows; ++j) {
-      for (int i = 0; i < grid.columns; i += batch_size) {
-        look_at({i, std::min(i + batch_size, grid.columns) - 1, j, j});
-      }
+    const int rows_at_once =
+        std::max(1, static_cast<int>(asked_at_once(force_.kind)) / grid.columns);
+    std::vector<int> nodes;
+    std::vector<double> distance;
+    for (int j0 = 0; j0 < grid.rows; j0 += rows_at_once) {
+      const int rows = std::min(rows_at_once, grid.rows - j0);
+      nodes.resize(std::size_t(rows) * std::size_t(grid.columns));
+      std::iota(nodes.begin(), nodes.end(), grid.node(0, j0));
+      distance = tiles_.nodes().distances(nodes, force_.kind, std::move(distance));
+      for (int row = 0; row < rows; ++row)
+        include_near(distance.data() + std::size_t(row) * std::size_t(grid.columns),
+                     {0, grid.columns - 1, j0 + row, j0 + row});
     }
   }
 
@@ -160,9 +183,13 @@ class Selecting {
   void look_at(const Box& row) {
     const int node = tiles_.grid().node(row.i0, row.j0);
     const Batch points = tiles_.nodes().batch(node, row.columns());
-    const BatchNumbers distance = distances(force_.kind, points);
-    deformation_.include_near(distance, points.count, force_.deformation_radius, row.i0, row.j0);
-    pushed_.include_near(distance, points.count, force_.force_radius, row.i0, row.j0);
+    include_near(distances(force_.kind, points).of, row);
+  }
+
+  void include_near(const double* distance, const Box& row) {
+    const int count = row.columns();
+    deformation_.include_near(distance, count, force_.deformation_radius, row.i0, row.j0);
+    pushed_.include_near(distance, count, force_.force_radius, row.i0, row.j0);
   }
 
   const NodeTiles& tiles_;
@@ -170,16 +197,92 @@ class Selecting {
   Reach deformation_, pushed_;
 };
 
+// The loads of forces that take many nodes, on those of a box. They are asked for all at once, or
+// for as many rows as `most_kept` allows.
+class OwnLoads {
+ public:
+  OwnLoads(const Grid& grid, const PlacedNodes& nodes, std::span<const SampledForce> forces,
+           const Selection& selection, std::size_t region, const Box& box)
+      : grid_(grid), nodes_(nodes), forces_(forces), selection_(selection), box_(box), strip_(box) {
+    constexpr std::size_t most_kept = std::size_t{1} << 20U;
+    strip_.j1 = box.j0 - 1;
+    for (const int k : selection.forces_of(region))
+      if (takes_many(forces[k].kind)) own_.push_back({k, {}});
+    const std::size_t most =
+        std::min(most_asked, most_kept / std::max<std::size_t>(own_.size(), 1));
+    rows_at_once_ = std::max(1, static_cast<int>(most) / box.columns());
+  }
+
+  // Asks for the loads on row `j`, unless they are there. Requires: j is the next row, or there.
+  void ask(int j) {
+    if (own_.empty() || j <= strip_.j1) return;
+    strip_.j0 = j;
+    strip_.j1 = std::min(j + rows_at_once_ - 1, box_.j1);
+    for (Own& own : own_) {
+      std::vector<int> asked;
+      std::vector<std::size_t> places;
+      for_each_shared(grid_, strip_, selection_.forces[own.force].force, [&](const Box& inside) {
+        for (int row = inside.j0; row <= inside.j1; ++row) {
+          for (int i = inside.i0; i <= inside.i1; ++i) {
+            asked.push_back(grid_.node_round(i, row));
+            places.push_back(place(i, row));
+          }
+        }
+      });
+      const std::vector<Vector3d> loads = nodes_.loads_on(asked, forces_[own.force]);
+      own.loads.resize(std::size_t(strip_.columns()) * std::size_t(strip_.rows()));
+      for (std::size_t n = 0; n < loads.size(); ++n) own.loads[places[n]] = loads[n];
+    }
+  }
+
+  // Adds those of the n-th of these forces on a row of nodes to `sums`, from index `first` on.
+  void add(std::size_t n, const Box& row, int first, Batch& sums) const {
+    const Vector3d* const loads = own_[n].loads.data() + place(row.i0, row.j0);
+    for (int k = 0; k < row.columns(); ++k) {
+      sums.x[first + k] += loads[k].x();
+      sums.y[first + k] += loads[k].y();
+      sums.z[first + k] += loads[k].z();
+    }
+  }
+
+ private:
+  struct Own {
+    int force;
+    std::vector<Vector3d> loads;  // on the strip, row by row; only those in its force box are set
+  };
+
+  std::size_t place(int i, int j) const {
+    return std::size_t(j - strip_.j0) * std::size_t(strip_.columns()) + std::size_t(i - strip_.i0);
+  }
+
+  const Grid& grid_;
+  const PlacedNodes& nodes_;
+  std::span<const SampledForce> forces_;
+  const Selection& selection_;
+  Box box_, strip_;
+  int rows_at_once_ = 1;
+  std::vector<Own> own_;
+};
+
 // The load on the nodes of a row, from (i,j) on, by the forces of one region; world space.
-// Requires: they do not cross a seam.
+// Requires: they do not cross a seam; `own` has them.
 Batch loads_on(const Grid& grid, const PlacedNodes& nodes, std::span<const SampledForce> forces,
-               const Selection& selection, std::size_t region, int i, int j, int count) {
+               const Selection& selection, std::size_t region, const OwnLoads& own, int i, int j,
+               int count) {
   Batch load;
   load.count = count;
   for (double* component : {load.x, load.y, load.z}) std::fill_n(component, count, 0.0);
+  std::size_t own_count = 0;
   for (const int k : selection.forces_of(region)) {
     const ForceSelection& selected = selection.forces[k];
-    for_each_shared(grid, {i, i + count - 1, j, j}, selected.force, [&](const Box& pushed) {
+    const Box row{i, i + count - 1, j, j};
+    if (takes_many(forces[k].kind)) {
+      for_each_shared(grid, row, selected.force,
+                      [&](const Box& pushed) { own.add(own_count, pushed, pushed.i0 - i, load); });
+      ++own_count;
+      continue;
+    }
+    for_each_shared(grid, row, selected.force, [&](const Box& pushed) {
       nodes.add_loads(grid.node_round(pushed.i0, j), pushed.columns(), forces[k], pushed.i0 - i,
                       load);
     });
@@ -195,12 +298,14 @@ void visit_load_rows(const Grid& grid, const PlacedNodes& nodes,
                      std::size_t region, const Box& box, const F& f) {
   PLIANT_EXPECTS(nodes.count() == grid.node_count());
   PLIANT_EXPECTS(selection.forces.size() == forces.size() && region < selection.regions.size());
+  OwnLoads own(grid, nodes, forces, selection, region, box);
   for (int j = box.j0; j <= box.j1; ++j) {
+    own.ask(j);
     for (int i = box.i0; i <= box.i1;) {
       const int end = i < grid.columns ? std::min(box.i1 + 1, grid.columns) : box.i1 + 1;
       const int count = std::min(batch_size, end - i);
       f(Eigen::Index{j - box.j0} * box.columns() + (i - box.i0),
-        loads_on(grid, nodes, forces, selection, region, i, j, count));
+        loads_on(grid, nodes, forces, selection, region, own, i, j, count));
       i += count;
     }
   }
@@ -287,7 +392,7 @@ Field assemble_load(const Grid& grid, const PlacedNodes& nodes,
 Push push_of(const Grid& grid, const PlacedNodes& nodes, const SampledForce& force, const Box& box,
              std::span<const Patch> patches) {
   Push push;
-  visit_loads(grid, nodes, force, box, patches, [&](const Vector3d& load) {
+  visit_loads(grid, nodes, force, box, patches, most_asked, [&](const Vector3d& load) {
     push.sum += load;
     push.node_count += !load.isZero(0);
     return true;
@@ -299,7 +404,8 @@ bool pushes(const Grid& grid, const PlacedNodes& nodes, const SampledForce& forc
             std::span<const Patch> patches) {
   if (force.magnitude == 0) return false;
   bool is_felt = false;
-  visit_loads(grid, nodes, force, box, patches, [&](const Vector3d& load) {
+  const std::size_t at_once = takes_many(force.kind) ? 32 : 1;  // a call costs more than some loads
+  visit_loads(grid, nodes, force, box, patches, at_once, [&](const Vector3d& load) {
     is_felt = !load.isZero(0);
     return !is_felt;
   });

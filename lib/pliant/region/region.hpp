@@ -21,7 +21,7 @@ ForceSelection boxes_of(const NodeTiles& tiles, const SampledForce& force);
 /// from the boxes. `selectors` has for each force the index of the force whose deformation box it
 /// uses; empty: each uses its own. `others` are boxes that no force selects, but that are solved
 /// too. If all boxes are unchanged, so are the regions, and nothing is allocated. A program's own
-/// function is called for every node, other forces only for nodes that can change a box.
+/// function is asked for every node, other forces only for nodes that can change a box.
 Selection reselected(Selection earlier, const NodeTiles& tiles,
                      std::span<const SampledForce> forces, Combine how,
                      std::span<const int> selectors = {}, std::span<const Box> others = {});

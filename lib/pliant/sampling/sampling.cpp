@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +13,8 @@
 
 namespace pliant {
 namespace {
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 Vector3d to_vector(const Value<3>& value) { return {value[0], value[1], value[2]}; }
 
@@ -115,28 +118,43 @@ std::string place_text(const Vector3d& p) {
   return fmt::format("({}, {}, {})", p.x(), p.y(), p.z());
 }
 
-// The program's functions at one time, with checks of their results.
+// The program's functions at one time, with checks of their results. What they leave out is not
+// finite.
 SampledCustomForce sample_custom(const CustomForce& custom, const std::string& name,
                                  const ForceTime& time,
                                  const std::shared_ptr<ForceFaults>& faults) {
   // By value: a report of a frame may outlive the scene.
-  const auto distance = [function = custom.distance, name, time, faults](const Vector3d& p) {
-    if (!function) return 0.0;
-    const double delta = function(p, time);
-    if (delta >= 0) return delta;
-    faults->add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0", name,
-                            place_text(p), delta));
-    return std::numeric_limits<double>::infinity();
+  const auto distance = [function = custom.distance, name, time, faults](
+                            std::span<const Vector3d> points, std::span<double> distances) {
+    if (!function) {
+      std::ranges::fill(distances, 0);
+      return;
+    }
+    if (function.is_of_many()) std::ranges::fill(distances, not_a_number);
+    function(points, time, distances);
+    bool is_sound = true;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (distances[k] >= 0) continue;
+      if (std::exchange(is_sound, false))
+        faults->add(fmt::format("force \"{}\": its distance at {} is {}, but must be at least 0",
+                                name, place_text(points[k]), distances[k]));
+      distances[k] = std::numeric_limits<double>::infinity();
+    }
   };
-  const auto unit_force = [function = custom.unit_force, name, time,
-                           faults](const Vector3d& p) -> Vector3d {
-    Vector3d force = function(p, time);
-    if (force.allFinite()) return force;
-    faults->add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite", name,
-                            place_text(p), place_text(force)));
-    return Vector3d::Zero();
+  const auto unit_force = [function = custom.unit_force, name, time, faults](
+                              std::span<const Vector3d> points, std::span<Vector3d> forces) {
+    if (function.is_of_many()) std::ranges::fill(forces, Vector3d::Constant(not_a_number));
+    function(points, time, forces);
+    bool is_sound = true;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (forces[k].allFinite()) continue;
+      if (std::exchange(is_sound, false))
+        faults->add(fmt::format("force \"{}\": its unit_force at {} is {}, which is not finite",
+                                name, place_text(points[k]), place_text(forces[k])));
+      forces[k] = Vector3d::Zero();
+    }
   };
-  return {distance, unit_force};
+  return {distance, unit_force, custom.distance.is_of_many() || custom.unit_force.is_of_many()};
 }
 
 struct SampleShape {

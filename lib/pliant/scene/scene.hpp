@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -16,6 +15,7 @@
 #include "pliant/core/result.hpp"
 #include "pliant/core/transform.hpp"
 #include "pliant/forces/falloff.hpp"
+#include "pliant/forces/position_function.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/mesh.hpp"
 #include "pliant/mesh/mesh_reading.hpp"
@@ -254,18 +254,24 @@ struct ForceTime {
 };
 
 /// A kind of force that an embedding program defines: like every kind (see forces/force.hpp), a
-/// distance and a unit force at a position in the world and a time.
+/// distance and a unit force at a position in the world and a time. Each is a function of one
+/// position, (p, time) -> value, or of many, (points, time, values); see `PositionFunction`.
 ///
 /// The functions must be pure: the same arguments give the same bits, or the run is not
-/// reproducible. They must be thread-safe if the simulation has several threads. They are called
-/// for each node, each frame. Their exceptions pass through `Simulation::at` and `preview_forces`
-/// to the caller; the simulation starts again from rest at the next call.
+/// reproducible. They must be thread-safe if the simulation has several threads. Their exceptions
+/// pass through `Simulation::at` and `preview_forces` to the caller; the simulation starts again
+/// from rest at the next call.
+///
+/// A frame calls those of many positions a few times for a surface, with up to 65536 of the nodes
+/// that are looked at: on a grid `distance` for all nodes, to select the region; both for 32 nodes,
+/// to see whether the force pushes, or for more if it pushes none of these; and both for the load
+/// of each patch. A place that they leave without a value is NotFinite.
 struct CustomForce {
   /// The distance compared with the radii, >= 0, infinite where the force never reaches [length];
   /// null: 0 everywhere.
-  std::function<double(const Vector3d& p, const ForceTime& time)> distance = {};
+  PositionFunction<double, const ForceTime&> distance = {};
   /// The force per unit of magnitude and falloff, finite. Must not be null.
-  std::function<Vector3d(const Vector3d& p, const ForceTime& time)> unit_force = {};
+  PositionFunction<Vector3d, const ForceTime&> unit_force = {};
   /// Identifies the functions and all values they capture. States that depend on the functions are
   /// stored under this key beyond one simulation, so functions with other results must have another
   /// key. Empty: such states are not stored.

@@ -245,7 +245,7 @@ std::optional<Hash> next_key(const Hash& before, const SurfaceInputs& inputs, in
   values.add(before);
   values.add(inputs.body);
   for (std::size_t k = 0; k < inputs.body.forces.size(); ++k) {
-    if (!std::holds_alternative<SampledCustomForce>(inputs.body.forces[k].kind)) continue;
+    if (!is_own(inputs.body.forces[k])) continue;
     const std::string_view key = inputs.sources[k].key;
     if (key.empty()) return {};
     values.add(key);

@@ -40,28 +40,34 @@ std::pair<Vector3d, Vector3d> placed_box(const Transform& transform,
 }
 
 // Calls f(rows, distances) for the nodes of each leaf that may be nearer than the radius, until f
-// returns false.
+// returns false; of a program's own force for all nodes, in the order of leaves.
 template <class F>
 void visit_near(const TriangleSurface& surface, const PointTree& tree, const Transform& transform,
                 const SampledForce& force, double radius, const F& f) {
   const PlacedNodes nodes(surface.rest, transform);
-  const bool is_custom = std::holds_alternative<SampledCustomForce>(force.kind);
+  if (is_own(force)) {
+    const std::span<const int> rows = tree.rows();
+    const std::size_t size = asked_at_once(force.kind);
+    for (std::size_t first = 0; first < rows.size(); first += size) {
+      const auto part = rows.subspan(first, std::min(size, rows.size() - first));
+      if (!f(part, nodes.distances(part, force.kind).data())) return;
+    }
+    return;
+  }
   std::vector<int> open;
   if (!tree.clusters().empty()) open.push_back(0);
   while (!open.empty()) {
     const PointTree::Cluster& cluster = tree.clusters()[open.back()];
     open.pop_back();
-    if (!is_custom) {
-      const auto [low, high] = placed_box(transform, cluster);
-      if (!(least_distance(force.kind, low, high) < radius)) continue;
-    }
+    const auto [low, high] = placed_box(transform, cluster);
+    if (!(least_distance(force.kind, low, high) < radius)) continue;
     if (!cluster.is_leaf()) {
       open.insert(open.end(), {cluster.child + 1, cluster.child});
       continue;
     }
     const std::span<const int> rows(tree.rows().data() + cluster.first,
                                     static_cast<std::size_t>(cluster.count));
-    if (!f(rows, distances(force.kind, nodes.batch(rows)))) return;
+    if (!f(rows, distances(force.kind, nodes.batch(rows)).of)) return;
   }
 }
 
@@ -132,9 +138,9 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
     if (!selects(selectors, k)) continue;
     const double radius = forces[k].deformation_radius;
     visit_near(surface, tree, transform, forces[k], radius,
-               [&](std::span<const int> rows, const BatchNumbers& distance) {
+               [&](std::span<const int> rows, const double* distance) {
                  for (std::size_t n = 0; n < rows.size(); ++n) {
-                   if (distance.of[n] < radius) inside.push_back(rows[n]);
+                   if (distance[n] < radius) inside.push_back(rows[n]);
                  }
                  return true;
                });
@@ -163,14 +169,8 @@ LevelSet find_level_set(const TriangleSurface& surface, const PointTree& tree,
 
 std::vector<double> depths_of(const PlacedNodes& placed, std::span<const int> nodes,
                               const ForceKind& force, double radius, std::vector<double> reuse) {
-  reuse.resize(nodes.size());
-  for (std::size_t first = 0; first < nodes.size(); first += batch_size) {
-    const std::size_t count = std::min<std::size_t>(batch_size, nodes.size() - first);
-    const BatchNumbers distance = distances(force, placed.batch(nodes.subspan(first, count)));
-    for (std::size_t n = 0; n < count; ++n) {
-      reuse[first + n] = std::clamp(radius - distance.of[n], -deepest, deepest);
-    }
-  }
+  reuse = placed.distances(nodes, force, std::move(reuse));
+  for (double& each : reuse) each = std::clamp(radius - each, -deepest, deepest);
   return reuse;
 }
 
@@ -185,40 +185,85 @@ std::vector<bool> nodes_within(const TriangleSurface& surface, const LevelSet& l
 
 namespace {
 
-// Searches a triangle, in world space, for a place nearer than `radius`.
+using Corners = std::array<Vector3d, 3>;
+
+// Searches triangles, in world space, for a place nearer than `radius`; all of them at a time, so
+// that a program's own force is asked for many places at once.
 class TriangleSearch {
  public:
   TriangleSearch(const SampledForce& force, double radius) : force_(force), radius_(radius) {}
 
-  bool finds(const std::array<Vector3d, 3>& corners) {
-    looks_ = 0;
-    return finds(corners, 0);
+  // Whether one of the triangles, or of those that still wait, has such a place. May let it wait.
+  bool finds(const Corners& corners) {
+    waiting_.push_back({.open = {{corners, 0}}});
+    return waiting_.size() == most_waiting && finds();
+  }
+
+  // Whether one of those that wait has such a place.
+  bool finds() {
+    while (!waiting_.empty()) {
+      middles_.clear();
+      for (const Triangle& one : waiting_) middles_.push_back(middle_of(one.open.back().corners));
+      const std::vector<double> least = distances();
+      for (std::size_t k = 0; k < waiting_.size(); ++k)
+        if (waiting_[k].finds(middles_[k], least[k], radius_)) return true;
+      std::erase_if(waiting_, [](const Triangle& one) { return one.open.empty(); });
+    }
+    return false;
   }
 
  private:
+  static constexpr std::size_t most_waiting = 1024;
+
+  struct Part {
+    Corners corners;
+    int level;
+  };
+
   // A distance changes by no more than the way to another position, so that most parts are settled
   // at once; what is still open at last touches the force at most.
-  bool finds(const std::array<Vector3d, 3>& corners, int level) {
-    constexpr int finest = 20, most_looks = 500;
-    const Vector3d middle = (corners[0] + corners[1] + corners[2]) / 3;
-    double way = 0;
-    for (const Vector3d& corner : corners) way = std::max(way, (corner - middle).norm());
-    const double least = distance(force_.kind, middle);
-    ++looks_;
-    if (least < radius_) return true;
-    if (!(least - way < radius_) || level == finest || looks_ > most_looks) return false;
-    const auto& [a, b, c] = corners;
-    const Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-    return finds({a, ab, ca}, level + 1) || finds({ab, b, bc}, level + 1) ||
-           finds({ca, bc, c}, level + 1) || finds({ab, bc, ca}, level + 1);
+  struct Triangle {
+    std::vector<Part> open;  // the last one is next
+    int looks = 0;
+
+    bool finds(const Vector3d& middle, double least, double radius) {
+      constexpr int finest = 20, most_looks = 500;
+      const auto [corners, level] = open.back();
+      open.pop_back();
+      double way = 0;
+      for (const Vector3d& corner : corners) way = std::max(way, (corner - middle).norm());
+      ++looks;
+      if (least < radius) return true;
+      if (!(least - way < radius) || level == finest || looks > most_looks) return false;
+      const auto& [a, b, c] = corners;
+      const Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
+      for (const Corners& part : {Corners{ab, bc, ca}, {ca, bc, c}, {ab, b, bc}, {a, ab, ca}})
+        open.push_back({part, level + 1});
+      return false;
+    }
+  };
+
+  static Vector3d middle_of(const Corners& corners) {
+    return (corners[0] + corners[1] + corners[2]) / 3;
+  }
+
+  std::vector<double> distances() const {
+    std::vector<double> found(middles_.size());
+    if (const auto* const own = std::get_if<SampledCustomForce>(&force_.kind)) {
+      own->distance(middles_, found);
+      return found;
+    }
+    for (std::size_t k = 0; k < found.size(); ++k) found[k] = distance(force_.kind, middles_[k]);
+    return found;
   }
 
   const SampledForce& force_;
   double radius_;
-  int looks_ = 0;
+  std::vector<Triangle> waiting_;
+  std::vector<Vector3d> middles_;
 };
 
-// Whether a face is nearer than `radius` anywhere.
+// Whether a face, or one of those that still wait, is nearer than `radius` anywhere.
 bool reaches_face(const TriangleSurface& surface, int face, const Transform& transform,
                   TriangleSearch& search) {
   const auto nodes = surface.nodes_of(face);
@@ -257,23 +302,23 @@ bool reaches(const TriangleSurface& surface, const PointTree& tree, const Transf
   TriangleSearch search(force, radius);
   const double beyond = with_faces ? surface.widest_face * transform.linear.norm() : 0;
   visit_near(surface, tree, transform, force, radius + beyond,
-             [&](std::span<const int> rows, const BatchNumbers& distance) {
+             [&](std::span<const int> rows, const double* distance) {
                for (std::size_t n = 0; n < rows.size() && !is_found; ++n) {
-                 is_found = distance.of[n] < radius;
+                 is_found = distance[n] < radius;
                  if (is_found || !with_faces) continue;
                  const auto faces = surface.faces_of(rows[n]);
                  // A distance changes by no more than the way to another position.
                  is_found = std::any_of(faces.begin(), faces.end(), [&](int face) {
                    const auto [known, is_new] = widths.try_emplace(face, 0);
                    if (is_new) known->second = width_of(face);
-                   if (distance.of[n] >= radius + known->second) return false;
+                   if (distance[n] >= radius + known->second) return false;
                    known->second = 0;
                    return reaches_face(surface, face, transform, search);
                  });
                }
                return !is_found;
              });
-  return is_found;
+  return is_found || search.finds();
 }
 
 double LevelSet::at_node(int node) const {

@@ -42,7 +42,13 @@ bool TriangleLoads::compute(const SampledForce& force) {
     reaches = std::any_of(at_nodes_.begin(), at_nodes_.end(), [](double at) { return at > 0; });
   }
   if (reaches) at_centres_ = means_at_centres(level_set_, at_nodes_, std::move(at_centres_));
-  bool acts = false;
+  struct Pushed {
+    std::size_t patch;
+    int row;
+    double area;
+  };
+  std::vector<Pushed> pushed;
+  std::vector<int> nodes;
   for (std::size_t k = 0; k < patches_.size(); ++k) {
     const TrianglePatch& patch = patches_[k];
     loads_[k] = Field::Zero(patch.free_nodes, 3);
@@ -50,12 +56,14 @@ bool TriangleLoads::compute(const SampledForce& force) {
     const std::vector<double> areas = areas_on(patch);
     for (int n = 0; n < patch.free_nodes; ++n) {
       if (areas[n] == 0) continue;
-      const int node = level_set_.nodes[patch.points[n]];
-      loads_[k].row(n) = (areas[n] * measured_.load_on(node, force)).transpose();
-      acts = true;
+      pushed.push_back({k, n, areas[n]});
+      nodes.push_back(level_set_.nodes[patch.points[n]]);
     }
   }
-  return acts;
+  const std::vector<Vector3d> loads = measured_.loads_on(nodes, force);
+  for (std::size_t n = 0; n < loads.size(); ++n)
+    loads_[pushed[n].patch].row(pushed[n].row) = (pushed[n].area * loads[n]).transpose();
+  return !nodes.empty();
 }
 
 // The area on which the force acts, shared out to the free nodes.
