@@ -8,6 +8,7 @@
 #include "pliant/feedback/contact_summary.hpp"
 #include "pliant/feedback/preview.hpp"
 #include "pliant/feedback/suggestion.hpp"
+#include "pliant/files/read_mesh.hpp"
 #include "pliant/files/write_mesh.hpp"
 #include "pliant/files/writer.hpp"
 #include "pliant/replay/replay.hpp"

@@ -53,6 +53,7 @@ int main() {
     for (const std::string& line : pliant::to_lines(simulation.error())) std::puts(line.c_str());
     return 1;
   }
+  if (pliant::read_mesh("no_file.obj")) return 1;
   double peak = 0;
   for (const int number : simulation->frames()) {
     const auto frame = simulation->at(number);

@@ -66,6 +66,11 @@ TEST_CASE("object and set of (u,v) reach each reader", "[mesh][read_mesh]") {
   CHECK_THAT(
       complaint_of_file(file, "b", 1),
       EndsWith("a.obj: error: the object has 1 UV set, so there is no set 1 (counted from 0)"));
+  for (const int uv_set : {-1, 8}) {
+    CHECK(complaint_of_file(file, "b", uv_set) == file.string() + ": error: the set of (u,v) is " +
+                                                      std::to_string(uv_set) +
+                                                      ", but must be from 0 to 7");
+  }
   const auto twice = folder.write("b.obj", obj + "o a\nf 1/1 2/2 3/3\n");
   CHECK_THAT(complaint_of_file(twice, "a"), contains_text("2 objects named \"a\""));
 }

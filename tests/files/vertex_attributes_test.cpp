@@ -96,11 +96,11 @@ TEST_CASE("formats without attributes say so", "[mesh][maps]") {
   const auto file = folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 2 3\n");
   const std::vector<std::string> names = {"soft"};
   CHECK(read_mesh(file));
-  const auto mesh = read_mesh(file, "", 0, {}, {}, names);
+  const auto mesh = read_mesh(file, "", 0, names);
   REQUIRE_FALSE(mesh);
   CHECK(mesh.error().file == file.string());
   CHECK_THAT(mesh.error().message, Contains(".obj has no attribute \"soft\"; only .ply, .gltf"));
-  const auto ply = read_mesh(folder.write("m.ply", soft_ply), "", 0, {}, {}, names);
+  const auto ply = read_mesh(folder.write("m.ply", soft_ply), "", 0, names);
   CHECK(ply->attributes[0].values[0] == 0.5);
 }
 

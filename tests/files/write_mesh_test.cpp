@@ -98,7 +98,7 @@ class RandomMesh {
 Mesh read_back(const Mesh& mesh, const std::filesystem::path& file) {
   std::vector<std::string> names;
   for (const VertexAttribute& attribute : mesh.attributes) names.push_back(attribute.name);
-  return read_mesh(file, {}, 0, {}, {}, names).value();
+  return read_mesh(file, {}, 0, names).value();
 }
 
 std::uint64_t bits(double number) { return std::bit_cast<std::uint64_t>(number); }

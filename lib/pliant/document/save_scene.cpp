@@ -19,7 +19,7 @@
 #include "pliant/files/caches/point_cache.hpp"
 #include "pliant/files/npy/npy_header.hpp"
 #include "pliant/files/open_file.hpp"
-#include "pliant/files/read_mesh.hpp"
+#include "pliant/files/opened_mesh.hpp"
 #include "pliant/files/row_order.hpp"
 #include "pliant/files/write_mesh.hpp"
 #include "pliant/scene/checks/check.hpp"

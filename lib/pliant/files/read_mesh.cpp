@@ -14,8 +14,10 @@
 #include "pliant/files/boxed/read_assimp.hpp"
 #include "pliant/files/file_object.hpp"
 #include "pliant/files/gltf/read_gltf.hpp"
+#include "pliant/files/mesh_objects.hpp"
 #include "pliant/files/obj/read_obj.hpp"
 #include "pliant/files/open_file.hpp"
+#include "pliant/files/opened_mesh.hpp"
 #include "pliant/files/ply/read_ply.hpp"
 #include "pliant/files/read_file.hpp"
 
@@ -45,13 +47,18 @@ std::vector<std::string> mesh_endings() {
   return {".obj", ".ply", ".gltf", ".glb", ".fbx", ".dae"};
 }
 
-Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object, int uv_set,
-                       const std::filesystem::path& root, const RunContext& context,
-                       std::span<const std::string> attributes) {
+Result<Mesh> read_mesh(const std::string& file, const std::string& object, int uv_set,
+                       std::span<const std::string> attributes, const StopRequest& should_stop) {
   if (auto known = check_mesh_ending(file); !known) return fail(known.error());
+  if (uv_set < 0 || uv_set >= max_uv_sets) {
+    return fail(
+        ErrorCode::InvalidInput,
+        fmt::format("the set of (u,v) is {}, but must be from 0 to {}", uv_set, max_uv_sets - 1),
+        file);
+  }
   const auto opened = OpenFile::open(file);
   if (!opened) return fail(opened.error());
-  return read_mesh(*opened, object, uv_set, root, context, attributes);
+  return read_mesh(*opened, object, uv_set, {}, {.should_stop = should_stop}, attributes);
 }
 
 Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_set,

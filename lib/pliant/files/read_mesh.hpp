@@ -1,44 +1,26 @@
 #pragma once
 
-#include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "pliant/core/result.hpp"
-#include "pliant/core/run_context.hpp"
-#include "pliant/files/mesh_objects.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/mesh/mesh.hpp"
 
 namespace pliant {
 
-class OpenFile;
-
-/// The memory that reading takes for a byte of a mesh file and of those that it refers to: the
-/// file, its mesh, and as much twice more while it is read. [bytes]
-inline constexpr std::size_t bytes_to_read_byte = 4;
-
-/// Reads one object of a mesh file with the reader for the file's ending, in any case: `read_obj`,
-/// `read_ply`, `read_gltf`, or `read_assimp` for FBX and Collada, which alone uses the memory of
-/// `context`.
-/// `object` chooses the object if the file has several (`find_objects`); `uv_set`, counted from 0,
-/// is the set of (u,v): OBJ and PLY have one. Files that it refers to must be in the folder `root`
-/// or below; empty: in its own folder. `attributes` names numbers at the vertices that the mesh
-/// keeps, of PLY and glTF. Errors: InvalidInput for another ending, or for attributes of a format
-/// without; those of the readers. Requires: 0 <= uv_set < max_uv_sets.
-Result<Mesh> read_mesh(const std::filesystem::path& file, const std::string& object = {},
-                       int uv_set = 0, const std::filesystem::path& root = {},
-                       const RunContext& context = {},
-                       std::span<const std::string> attributes = {});
-Result<Mesh> read_mesh(const OpenFile& file, const std::string& object, int uv_set,
-                       const std::filesystem::path& root, const RunContext& context,
-                       std::span<const std::string> attributes);
-
-/// The files that `read_mesh` may open besides this one, existing or not: buffers of a glTF. Empty
-/// for a file that cannot be read, or if the work was stopped.
-std::vector<std::filesystem::path> mesh_references(const OpenFile& file,
-                                                   const std::filesystem::path& root,
-                                                   const StopRequest& should_stop = {});
+/// Reads one object of a mesh file with the reader for the file's ending, in any case: OBJ, PLY,
+/// glTF, FBX or Collada; docs/meshes.md. The mesh is as the file has it: vertices keep its order.
+///
+/// `object` chooses the object if the file has several; `uv_set`, counted from 0, is the set of
+/// (u,v): OBJ and PLY have one. Files that it refers to must be in its folder or below.
+/// `attributes` names numbers at the vertices that the mesh keeps, of PLY and glTF.
+///
+/// Errors, naming the file: InvalidInput for another ending, a file that is not of its format, an
+/// object, set or attribute that it lacks, and several objects if none is chosen; Unreadable;
+/// OutOfMemory; Interrupted.
+Result<Mesh> read_mesh(const std::string& file, const std::string& object = {}, int uv_set = 0,
+                       std::span<const std::string> attributes = {},
+                       const StopRequest& should_stop = {});
 
 }  // namespace pliant

@@ -10,7 +10,7 @@
 #include "pliant/core/hash.hpp"
 #include "pliant/core/shelf.hpp"
 #include "pliant/files/open_file.hpp"
-#include "pliant/files/read_mesh.hpp"
+#include "pliant/files/opened_mesh.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"
 #include "pliant/sampling/memory.hpp"
 #include "pliant/sampling/read_files.hpp"

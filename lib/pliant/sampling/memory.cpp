@@ -1,7 +1,7 @@
 #include "pliant/sampling/memory.hpp"
 
 #include "pliant/files/open_file.hpp"
-#include "pliant/files/read_mesh.hpp"
+#include "pliant/files/opened_mesh.hpp"
 
 namespace pliant {
 namespace {

@@ -12,7 +12,7 @@
 #include "pliant/body/grid_body.hpp"
 #include "pliant/body/triangle_body.hpp"
 #include "pliant/files/open_file.hpp"
-#include "pliant/files/read_mesh.hpp"
+#include "pliant/files/opened_mesh.hpp"
 #include "pliant/mesh/grid_mapping.hpp"
 #include "pliant/mesh/grid_sheet.hpp"
 #include "pliant/mesh/triangles/triangle_surface.hpp"

@@ -6,8 +6,8 @@
 #include <variant>
 
 #include "pliant/files/open_file.hpp"
+#include "pliant/files/opened_mesh.hpp"
 #include "pliant/files/read_file.hpp"
-#include "pliant/files/read_mesh.hpp"
 #include "pliant/scene/sharing/expand.hpp"
 
 namespace pliant {
