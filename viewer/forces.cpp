@@ -8,32 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "pliant/scene/format/description.hpp"
-
 namespace pliant::viewer {
 namespace {
-
-struct AddValues {
-  const std::function<void(std::string_view, const ValueAt&)>& add;
-
-  void operator()(const Attribute& attribute, const Channel<1>& channel) const {
-    add(attribute.name, [&](int frame) { return Json(channel.at(frame)[0]); });
-  }
-  void operator()(const Attribute& attribute, const Channel<3>& channel) const {
-    add(attribute.name, [&](int frame) { return Json(channel.at(frame)); });
-  }
-  void operator()(const Attribute& attribute, const PositionChannel& position) const {
-    add(attribute.name, [&](int frame) { return Json(position.at(frame)); });
-  }
-  void operator()(const Attribute& attribute, const std::optional<Channel<3>>& channel) const {
-    if (channel) (*this)(attribute, *channel);
-  }
-  void operator()(const Attribute& attribute, const Switch& channel) const {
-    add(attribute.name, [&](int frame) { return Json(channel.at(frame)); });
-  }
-  template <class Other>
-  void operator()(const Attribute&, const Other&) const {}  // not a channel
-};
 
 Json channel_track(const Channel<1>& channel, const FrameSpan& frames) {
   return track(frames, [&](int frame) { return Json(channel.at(frame)[0]); });
@@ -73,7 +49,7 @@ class Named {
 Json value_of(const Force& force, std::string_view attribute, int frame) {
   Json found;
   for_each_value(force, [&](std::string_view name, const ValueAt& value_at) {
-    if (name == attribute) found = value_at(frame);
+    if (name == attribute) found = to_json(value_at(frame));
   });
   return found;
 }
@@ -117,18 +93,7 @@ Json corners(const Box& box) { return {box.i0, box.i1, box.j0, box.j1}; }
 
 }  // namespace
 
-void for_each_value(const Force& force,
-                    const std::function<void(std::string_view, const ValueAt&)>& add) {
-  std::visit([&](const auto& kind) { describe(AddValues{add}, kind); }, force.kind);
-}
-
-void for_each_value(const Collider& collider,
-                    const std::function<void(std::string_view, const ValueAt&)>& add) {
-  describe(AddValues{add}, collider);
-  std::visit([&](const auto& shape) { describe(AddValues{add}, shape); }, collider.shape);
-}
-
-Json track(const FrameSpan& frames, const ValueAt& value_at) {
+Json track(const FrameSpan& frames, const std::function<Json(int frame)>& value_at) {
   Json values = Json::array();
   bool is_constant = true;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
@@ -137,6 +102,10 @@ Json track(const FrameSpan& frames, const ValueAt& value_at) {
   }
   if (is_constant) return Json::array({values.front()});
   return values;
+}
+
+Json track(const FrameSpan& frames, const ValueAt& value_at) {
+  return track(frames, [&](int frame) { return to_json(value_at(frame)); });
 }
 
 Result<Json> view_forces(const Simulation& simulation, const FrameSpan& frames,

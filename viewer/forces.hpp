@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -12,6 +11,7 @@
 #include "pliant/feedback/frame_report.hpp"
 #include "pliant/feedback/surface_lines.hpp"
 #include "pliant/sampling/rest_shape.hpp"
+#include "pliant/scene/channel_values.hpp"
 #include "pliant/scene/scene.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "viewer/json.hpp"
@@ -19,19 +19,8 @@
 
 namespace pliant::viewer {
 
-/// The value of a channel at a frame: a number, or [x, y, z].
-using ValueAt = std::function<Json(int frame)>;
-
-/// Calls `add` for each channel of a force's kind, such as `center`: the name of its attribute and
-/// its values. A position on a path is a position. What follows a surface is in its object space.
-void for_each_value(const Force& force,
-                    const std::function<void(std::string_view, const ValueAt&)>& add);
-
-/// Likewise for the channels of a collider and of its shape, but for its transform.
-void for_each_value(const Collider& collider,
-                    const std::function<void(std::string_view, const ValueAt&)>& add);
-
 /// The value at each frame, or a single value if all are equal.
+Json track(const FrameSpan& frames, const std::function<Json(int frame)>& value_at);
 Json track(const FrameSpan& frames, const ValueAt& value_at);
 
 /// The forces and groups of a scene as a page draws them: their places in the world and radii at

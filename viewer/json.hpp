@@ -5,6 +5,7 @@
 #include "pliant/core/field.hpp"
 #include "pliant/core/grid.hpp"
 #include "pliant/core/transform.hpp"
+#include "pliant/scene/channel_values.hpp"
 
 namespace pliant::viewer {
 
@@ -13,6 +14,10 @@ using Json = nlohmann::ordered_json;
 
 /// [x, y, z].
 inline Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
+
+inline Json to_json(const ChannelValue& value) {
+  return std::visit([](const auto& one) { return Json(one); }, value);
+}
 
 /// The three rows of [linear, translation].
 inline Json to_json(const Transform& transform) {

@@ -18,6 +18,7 @@
 #include "pliant/scene/scene.hpp"
 #include "pliant/scene/write.hpp"
 #include "pliant/simulation/live.hpp"
+#include "pliant/simulation/report_json.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/simulation/state_file.hpp"
 #include "pliant/states/folder_store.hpp"

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <span>
+#include <string>
 
 #include <pliant/pliant.hpp>
 #include <pliant/timeline/edit/edit.hpp>
@@ -53,6 +54,9 @@ int main() {
     for (const std::string& line : pliant::to_lines(simulation.error())) std::puts(line.c_str());
     return 1;
   }
+  const auto report = simulation->report(3);
+  const auto told = report ? pliant::to_json(*report, *simulation) : pliant::fail(report.error());
+  if (!told || told->find("\"kind\":\"custom\"") == std::string::npos) return 1;
   if (pliant::read_mesh("no_file.obj")) return 1;
   double peak = 0;
   for (const int number : simulation->frames()) {

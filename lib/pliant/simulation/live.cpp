@@ -202,6 +202,9 @@ class LiveSimulation::Run {
   Result<void> advance();
   Result<Frame> positions(Frame reuse) { return bodies_.output(frame_, std::move(reuse)); }
   Result<FrameReport> report();
+  Force in_world(const Force& force) const {
+    return pliant::in_world(scene_, force, frame_, sampling_.carriers());
+  }
   Result<Scene> performance() const;
   std::vector<Warning> warnings() const;
 
@@ -501,6 +504,8 @@ Result<void> LiveSimulation::advance() { return run_->advance(); }
 Result<Frame> LiveSimulation::positions(Frame reuse) { return run_->positions(std::move(reuse)); }
 
 Result<FrameReport> LiveSimulation::report() { return run_->report(); }
+
+Force LiveSimulation::in_world(const Force& force) const { return run_->in_world(force); }
 
 Result<Scene> LiveSimulation::performance() const { return run_->performance(); }
 

@@ -70,6 +70,9 @@ class LiveSimulation {
   /// The solve that `advance` would make now: regions, forces, steps. Errors: as `advance`.
   Result<FrameReport> report();
 
+  /// A force of the scene as it is in the world at the present frame, as `Simulation::in_world`.
+  Force in_world(const Force& force) const;
+
   /// The scene with everything set so far as keys, from its start to the present frame. A
   /// `Simulation` of it has the same bits at each frame, and `to_xml` writes it. Requires:
   /// `LiveOptions::records`. Errors: InvalidInput if a
