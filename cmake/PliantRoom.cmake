@@ -81,7 +81,10 @@ function(pliant_room name)
   cmake_parse_arguments(PARSE_ARGV 1 room "" "" "LAYERS;SOURCES;HEADERS;PUBLIC;PRIVATE")
   set(target pliant_${name})
   string(REPLACE "_" "/" folder "${name}")
-  string(REGEX REPLACE "/pliant/${folder}$" "" include_root "${CMAKE_CURRENT_SOURCE_DIR}")
+  # Within the project, whose own folder may be named pliant.
+  file(RELATIVE_PATH root "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  string(REGEX REPLACE "/pliant/${folder}$" "" root "/${root}")
+  set(include_root "${PROJECT_SOURCE_DIR}${root}")
   add_library(${target})
   add_library(pliant::${name} ALIAS ${target})
   target_sources(${target}

@@ -18,9 +18,13 @@
 #include "viewer/json.hpp"
 #include "viewer/mesh_order.hpp"
 #include "viewer/motion.hpp"
+#include "viewer/page.hpp"
 
 namespace pliant::viewer {
 namespace {
+
+// The longest text in bytes that browsers accept in one piece.
+constexpr std::size_t longest_page = 500'000'000;
 
 // Both ends of each edge of the faces, each edge once. Unfinished if it is stopped.
 std::vector<std::uint32_t> edge_vertices(const Mesh& mesh, StopPoll& poll) {
@@ -226,7 +230,8 @@ Json messages_of(const Simulation& simulation) {
 }
 
 Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
-                          std::size_t max_memory) {
+                          const ViewLimits& limits) {
+  const std::size_t max_memory = limits.max_memory;
   const auto solids = size_of_colliders(simulation);
   if (!solids) return fail(solids.error());
   std::size_t vertex_count = solids->moving_vertices;
@@ -246,12 +251,12 @@ Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
   const std::size_t count = simulation.scene().colliders.size();
   const std::string colliders =
       count == 0 ? "" : fmt::format(" and {} collider{}", count, count == 1 ? "" : "s");
-  return fail(ErrorCode::OutOfMemory,
-              fmt::format("a page of {} frames of {} vertices{} needs {}, more than the {} left of "
-                          "--max-memory; choose fewer frames with --frames A:B",
-                          frames.count(), vertex_count, colliders,
-                          bytes_text(static_cast<std::size_t>(bytes)),
-                          bytes_text(static_cast<std::size_t>(free))));
+  return fail(
+      ErrorCode::OutOfMemory,
+      fmt::format(
+          "a page of {} frames of {} vertices{} needs {}, more than the {} that are left; {}",
+          frames.count(), vertex_count, colliders, bytes_text(static_cast<std::size_t>(bytes)),
+          bytes_text(static_cast<std::size_t>(free)), limits.advice));
 }
 
 using ForceNumbers = std::map<std::string, std::size_t, std::less<>>;
@@ -289,7 +294,7 @@ Result<void> run_frames(Simulation& simulation, const FrameSpan& frames, const V
 
 Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
                            const ViewLimits& limits, const std::function<void()>& advance) {
-  if (auto fits = check_memory(simulation, frames, limits.max_memory); !fits) {
+  if (auto fits = check_memory(simulation, frames, limits); !fits) {
     return fail(fits.error());
   }
   const Scene& scene = simulation.scene();
@@ -342,6 +347,16 @@ Result<ViewBake> view_bake(Simulation& simulation, const FrameSpan& frames,
   if (!packed) return fail(packed.error());
   bake.packed = *std::move(packed);
   return bake;
+}
+
+Result<std::string> page_of(std::string_view page, const Scene& scene, const ViewBake& bake,
+                            const ViewLimits& limits) {
+  const std::string title = std::filesystem::path(scene.origin.file).filename().string();
+  auto whole = page_with(page, title, bake.packed, limits.should_stop);
+  if (!whole || whole->size() <= longest_page) return whole;
+  return fail(ErrorCode::OutOfMemory,
+              fmt::format("the page would be {}, larger than the {} that a browser can load; {}",
+                          bytes_text(whole->size()), bytes_text(longest_page), limits.advice));
 }
 
 }  // namespace pliant::viewer

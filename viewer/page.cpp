@@ -1,13 +1,11 @@
 #include "viewer/page.hpp"
 
-#include <span>
-
 #include "pliant/core/base64.hpp"
 
 namespace pliant::viewer {
 
-// The built pages, empty in a build without npm; generated, see viewer/CMakeLists.txt.
-extern const std::span<const unsigned char> embedded_page, embedded_sweep_page;
+// Generated, see viewer/CMakeLists.txt.
+extern const std::span<const unsigned char> embedded_page;
 
 namespace {
 
@@ -43,6 +41,8 @@ void put(std::string& page, std::string_view begin, std::string_view end, std::s
   page.replace(from + begin.size(), to - from - begin.size(), text);
 }
 
+}  // namespace
+
 Result<std::string_view> text_of(std::span<const unsigned char> page) {
   if (!page.empty()) {
     return std::string_view(reinterpret_cast<const char*>(page.data()), page.size());
@@ -52,11 +52,7 @@ Result<std::string_view> text_of(std::span<const unsigned char> page) {
               "script/bootstrap && script/build adds it");
 }
 
-}  // namespace
-
 Result<std::string_view> page_template() { return text_of(embedded_page); }
-
-Result<std::string_view> sweep_page_template() { return text_of(embedded_sweep_page); }
 
 std::string policy_of(std::string_view page) {
   const std::size_t from = page.find(policy_begin);
@@ -78,7 +74,7 @@ Result<std::string> page_with(std::string_view page, std::string_view title,
   if (const auto at = result.find(asks_own_server); at != std::string::npos) {
     result.replace(at, asks_own_server.size(), "connect-src 'none'");
   }
-  put(result, "<title>", "</title>", escaped(title) + " – pliant");
+  put(result, "<title>", "</title>", (title.empty() ? "" : escaped(title) + " – ") + "pliant");
   put(result, "<script id=\"bake\" type=\"text/plain\">", "</script>", digits);
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -12,8 +13,8 @@ namespace pliant::viewer {
 /// message says how to get it.
 Result<std::string_view> page_template();
 
-/// The page that shows a sweep. Errors: likewise.
-Result<std::string_view> sweep_page_template();
+/// A page that is embedded in the program; empty: in a build without npm. Errors: likewise.
+Result<std::string_view> text_of(std::span<const unsigned char> page);
 
 /// The page's content security policy: it may use its own scripts and styles and connect to its own
 /// server, nothing else.

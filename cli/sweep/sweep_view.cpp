@@ -21,6 +21,7 @@
 #include "pliant/files/atomic_file.hpp"
 #include "viewer/page.hpp"
 #include "viewer/sweep_bake.hpp"
+#include "viewer/sweep_page.hpp"
 
 namespace pliant::cli {
 namespace {

@@ -21,19 +21,6 @@
 namespace pliant::cli {
 namespace {
 
-// The longest text in bytes that browsers accept in one piece.
-constexpr std::size_t longest_page = 500'000'000;
-
-Result<void> write_page(const std::filesystem::path& file, const std::string& page) {
-  if (page.size() > longest_page) {
-    return fail(ErrorCode::OutOfMemory,
-                fmt::format("the page would be {}, larger than the {} that a browser can load; "
-                            "choose fewer frames with --frames A:B",
-                            bytes_text(page.size()), bytes_text(longest_page)));
-  }
-  return write_file(file, page, &was_interrupted);
-}
-
 std::string page_file(const ViewOptions& options) { return options.out.value_or("view.html"); }
 
 // Whether the scene can be served, or the result can be written to its place.
@@ -55,8 +42,8 @@ int page_view(const ViewOptions& options, std::string_view page) {
   const auto baked = bake_scene(*std::move(scene), options, &was_interrupted);
   if (!baked) return report(with_kept(baked.error(), "no page was written"));
   const auto made =
-      viewer::page_with(page, title_of(baked->scene), baked->bake.packed, &was_interrupted);
-  const auto written = made ? write_page(out, *made) : fail(made.error());
+      viewer::page_of(page, baked->scene, baked->bake, view_limits(options, &was_interrupted));
+  const auto written = made ? write_file(out, *made, &was_interrupted) : fail(made.error());
   if (!written) return report(with_kept(written.error(), "no page was written"));
   if (options.is_quiet) return exit_done;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;

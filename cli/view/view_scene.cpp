@@ -1,7 +1,6 @@
 #include "cli/view/view_scene.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,8 +20,9 @@ void print_weight(const viewer::ViewBake& bake) {
 
 }  // namespace
 
-std::string title_of(const Scene& scene) {
-  return std::filesystem::path(scene.origin.file).filename().string();
+viewer::ViewLimits view_limits(const ViewOptions& options, const StopRequest& should_stop) {
+  return {simulation_options(options.resources).max_memory, should_stop,
+          "choose fewer frames with --frames A:B"};
 }
 
 Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
@@ -39,8 +39,9 @@ Result<BakedScene> bake_scene(Scene scene, const ViewOptions& options,
   if (!simulation) return fail(simulation.error());
   auto baked = [&] {
     Progress progress(frames->last - simulation->scene().start + 1, options.is_quiet);
-    return viewer::view_bake(*simulation, *frames, {run.max_memory, should_stop},
-                             [&] { progress.advance(); });
+    viewer::ViewLimits limits = view_limits(options, should_stop);
+    limits.max_memory = run.max_memory;
+    return viewer::view_bake(*simulation, *frames, limits, [&] { progress.advance(); });
   }();
   print_warnings(*simulation);
   if (!baked) return fail(baked.error());

@@ -17,8 +17,7 @@ struct BakedScene {
   FrameCounts counts;  ///< frames solved and frames read from the store
 };
 
-/// The page's title: the name of the scene's file, without its folder.
-std::string title_of(const Scene& scene);
+viewer::ViewLimits view_limits(const ViewOptions& options, const StopRequest& should_stop);
 
 /// Runs a scene that has been read, and prints its notes and warnings. States of earlier runs in
 /// `store` are not solved again; the memory of the store counts towards the command's limit.

@@ -37,8 +37,16 @@ file(WRITE "${WORK}/other.xml" "${scene}")
 run("${pliant}" replay record "${SOURCE}/scene.xml" -o "${WORK}/scene.replay")
 run("${pliant}" replay record "${WORK}/other.xml" -o "${WORK}/other.replay")
 
+# Pages, if the build has the viewer's.
+set(pages OFF)
+if(EXISTS "${PREFIX}/share/pliant/viewer.html")
+  set(pages ON)
+  run("${CMAKE_COMMAND}" -E chdir "${SOURCE}" "${pliant}" view scene.xml -o "${WORK}/page_1_12.html")
+  run("${CMAKE_COMMAND}" -E chdir "${SOURCE}" "${pliant}" view scene.xml --frames 3:7 -o "${WORK}/page_3_7.html")
+endif()
+
 run("${CMAKE_COMMAND}" -G Ninja -S "${SOURCE}" -B "${WORK}/build"
-    "-DCMAKE_PREFIX_PATH=${PREFIX}" "-DREADME_CODE=${WORK}/readme.cpp" "-DLOGS=${WORK}"
+    "-DCMAKE_PREFIX_PATH=${PREFIX}" "-DREADME_CODE=${WORK}/readme.cpp" "-DLOGS=${WORK}" -DPAGES=${pages}
     ${flags})
 run("${CMAKE_COMMAND}" --build "${WORK}/build")
 run("${WORK}/build/consumer")

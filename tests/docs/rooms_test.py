@@ -23,6 +23,7 @@ PAGE = """\
 | shapes_edit | lib/pliant/shapes/edit | edits of shapes | shapes |
 | body | lib/pliant/body | a body | shapes/box.hpp, core |
 | cli | cli | the command | everything public |
+| pages | pages | pages for programs | everything public |
 
 | another | table |
 """
@@ -51,6 +52,10 @@ TREE = {
     "cli/CMakeLists.txt": "target_link_libraries(pliant_cli PRIVATE pliant::pliant)\n",
     "cli/main.cpp": '#include <pliant/pliant.hpp>\n#include "pliant/core/core.hpp"\n#include "usage.hpp"\n',
     "cli/terminal/usage.hpp": "",
+    "pages/CMakeLists.txt": "pliant_room(pages HEADERS pliant/pages/page.hpp PUBLIC pliant::pliant)\n",
+    "pages/pliant/pages/page.hpp": '#include "pliant/core/core.hpp"\n',
+    "pages/pliant/pages/page.cpp": '#include "pliant/pages/page.hpp"\n#include "pages/json.hpp"\n',
+    "pages/json.hpp": "",
 }
 
 # What is wrong: the file, its text replaced by another, and the only fault that this makes.
@@ -127,6 +132,11 @@ WRONG = [
     ("a private link that a header needs", "lib/pliant/shapes/CMakeLists.txt", "PUBLIC", "PRIVATE",
      "lib/pliant/shapes/CMakeLists.txt:1: includes core in a public header, but links it as PRIVATE",
      "lib/pliant/shapes/edit/CMakeLists.txt:1: includes core, but does not link it"),
+    ("an internal header in a public one for some programs", "pages/pliant/pages/page.hpp", "<<end>>",
+     '#include "pages/json.hpp"\n',
+     "pages/pliant/pages/page.hpp:2: a public header includes json.hpp, which is not public"),
+    ("everything as a private link that a header needs", "pages/CMakeLists.txt", "PUBLIC", "PRIVATE",
+     "pages/CMakeLists.txt:1: includes core in a public header, but links it as PRIVATE"),
     ("a library that programs do not get", "lib/CMakeLists.txt", " pliant::shapes_edit", "",
      "lib/pliant/shapes/edit/CMakeLists.txt:1: pliant::pliant does not link shapes_edit"),
 ]
