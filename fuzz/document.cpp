@@ -1,7 +1,8 @@
 // A scene and operations on it: the first part of the input, before a line of %%, is the text, and
-// each line behind it an operation, by its letter and fields between bars. Whatever is done: an
-// accepted text can be read, a refused operation changes nothing, and edits can be taken back and
-// made again to the byte.
+// each line behind it an operation, by its letter and fields between bars; `u` takes one back, `~`
+// drops the last one, and before an operation amends it. Whatever is done: an accepted text can be
+// read, a refused operation changes nothing, and edits can be taken back and made again to the
+// byte.
 
 #include "pliant/document/document.hpp"
 
@@ -200,9 +201,10 @@ void check_change(const Change& change, std::string text, const std::string& aft
   require(std::ranges::is_sorted(change.parts));
 }
 
-void operate(SceneDocument& document, const std::vector<Operation>& operations, Texts& texts) {
+void operate(SceneDocument& document, const std::vector<Operation>& operations, bool amends,
+             Texts& texts) {
   const std::string before = document.text();
-  const auto change = document.apply(operations);
+  const auto change = amends ? document.amend(operations) : document.apply(operations);
   if (!change) {
     check_error(change.error(), any_number);
     require(document.text() == before);
@@ -210,7 +212,8 @@ void operate(SceneDocument& document, const std::vector<Operation>& operations, 
   }
   const std::string& after = document.text();
   check_change(*change, before, after);
-  if (after != before) texts.push_back(after);
+  if (amends) texts.pop_back();
+  if (after != texts.back()) texts.push_back(after);
 }
 
 void check_history(SceneDocument& document, const Texts& texts) {
@@ -260,14 +263,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   Texts texts = {text};
   auto lines = parts_between(input.substr(std::min(end + 4, input.size())), "\n");
   lines.resize(std::min(lines.size(), most_operations));
-  for (const std::string_view line : lines) {
-    if (line == "u" && document->can_undo()) {
-      require(document->undo().has_value());
+  for (std::string_view line : lines) {
+    if ((line == "u" || line == "~") && document->can_undo()) {
+      const auto change = line == "u" ? document->undo() : document->drop();
+      require(change.has_value());
+      check_change(*change, texts.back(), texts.end()[-2]);
       texts.pop_back();
       require(document->text() == texts.back());
-    } else if (const auto operation = operation_of(line, document->scene())) {
+      continue;
+    }
+    const bool amends = line.starts_with('~') && document->can_undo();
+    if (amends) line.remove_prefix(1);
+    if (const auto operation = operation_of(line, document->scene())) {
       require(!described(*operation).empty());
-      operate(*document, {*operation}, texts);
+      operate(*document, {*operation}, amends, texts);
     }
   }
   check_text(*document);

@@ -38,6 +38,13 @@ int main(int count, char* arguments[]) {
   if (!step) return tell(step.error());
   std::printf("%s: %zu edits\n", step->name.c_str(), step->edits.size());
 
+  // A drag is one step: each value takes the place of the one before. Escape takes it back.
+  auto drag = document->apply({edit::Set{"swell.forceRadius", "0.5"}}, "drag");
+  for (const double radius : {0.6, 0.7})
+    if (drag) drag = document->amend({edit::Set{"swell.forceRadius", edit::to_text(radius)}});
+  if (drag) drag = document->drop();
+  if (!drag) return tell(drag.error());
+
   // A refusal is the error of a file that has the problem. Nothing has changed.
   const auto refused = document->apply({edit::Set{"swell.forceRadius", "-1"}});
   if (refused) return 1;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,18 +47,36 @@ class SceneDocument {
   const std::string& file() const { return file_; }
 
   /// Makes operations as one edit, all or nothing; `name`: of the edit, by default what the first
-  /// one does. Edits that were undone are lost. A edit that changes no byte is none.
+  /// one does. Edits that were undone cannot be made again, unless it is dropped. An edit that
+  /// changes no byte is none.
   ///
   /// Errors: an operation names what is not there, or asks for what its comment excludes; the
   /// resulting text has a problem, said as for a file that has it.
   Result<Change> apply(const std::vector<Operation>& operations, const std::string& name = {});
 
+  /// The same in place of the last edit that is not undone, as one that was never made: of a drag,
+  /// the next value in place of the last. Edits that were made after it and undone are lost. If
+  /// the text is as it was before that edit, `drop` it. A refusal leaves the edit as it is. The
+  /// `Change` leads from the text as it is; its `parts` are those of both edits.
+  ///
+  /// Errors: there is no edit; those of `apply`.
+  Result<Change> amend(const std::vector<Operation>& operations, const std::string& name = {});
+
+  /// Takes the last edit that is not undone back, as one that was never made: what `redo` could
+  /// make before it, it can make again. Errors: those of `undo`.
+  Result<Change> drop();
+
+  /// Takes another text in place of the whole, as one edit of the characters between those that
+  /// both begin and end with. The parts of the `Change` are the objects that differ, and `scene`.
+  /// Errors: those of `from_text`.
+  Result<Change> replace(const std::string& text, const std::string& name = {});
+
   /// Takes the last edit back, or makes it again. Errors: there is none; InvalidInput, Unreadable
   /// if a file that the scene includes has changed so that the text cannot be read any more.
   Result<Change> undo();
   Result<Change> redo();
-  bool can_undo() const { return done_ > 0; }
-  bool can_redo() const { return done_ < edits_.size(); }
+  bool can_undo() const { return last_ != 0; }
+  bool can_redo() const { return edits_[last_].next != 0; }
   const std::string& undo_name() const;  ///< empty: there is none
   const std::string& redo_name() const;
 
@@ -75,13 +94,28 @@ class SceneDocument {
  private:
   struct Edit {
     std::string name;
-    std::vector<edit::EditBatch> batches;  // one after the other
-    std::vector<std::string> parts;
+    std::vector<edit::EditBatch> batches = {};  // one after the other
+    std::vector<std::string> parts = {};
+    std::size_t before = 0;    // the edit that it was made after
+    std::size_t replaced = 0;  // what could be made again there, until it was made; 0: nothing
+    std::size_t next = 0;      // what can be made again after it, if it is the last; 0: nothing
+  };
+
+  /// An edit, and the text after it.
+  struct EditedText {
+    Edit edit;
+    std::string text;
   };
 
   SceneDocument() = default;
   Result<Scene> parse(const std::string& text) const;
   Result<Scene> checked(const std::string& text) const;
+  Result<EditedText> edited(const std::string& text, const Scene& scene,
+                            const std::vector<Operation>& operations,
+                            const std::string& name) const;
+  Change push(EditedText edited, Scene scene);
+  void remove_last();
+  std::string text_before(std::vector<edit::EditBatch>& batches) const;
   Result<Change> take(std::string text, const Edit& edit,
                       const std::vector<edit::EditBatch>& batches);
 
@@ -91,8 +125,11 @@ class SceneDocument {
   std::string text_;
   std::string saved_;
   Scene scene_;
-  std::vector<Edit> edits_;
-  std::size_t done_ = 0;  // edits that are not undone
+  std::optional<Scene> scene_before_;  // the last edit; null: unknown
+  // In the order in which they were made; the first stands for none. With the last one that is not
+  // undone go all behind it, which were made after it.
+  std::vector<Edit> edits_ = std::vector<Edit>(1);
+  std::size_t last_ = 0;  // that is not undone
 };
 
 /// Whether the text of a scene, whose files are relative to `folder`, means the same as the text of

@@ -1,5 +1,7 @@
 #include "pliant/document/text_edit.hpp"
 
+#include <algorithm>
+
 #include "pliant/core/expects.hpp"
 
 namespace pliant::edit {
@@ -30,6 +32,23 @@ EditBatch reversed(const EditBatch& batch) {
     copied = edit.at + edit.removed.size();
   }
   return result;
+}
+
+TextEdit difference(std::string_view from, std::string_view to) {
+  // Whether a character ends before a byte.
+  const auto ends = [](std::string_view text, std::size_t at) {
+    return at == text.size() || (static_cast<unsigned char>(text[at]) & 0xC0U) != 0x80U;
+  };
+  const std::size_t shorter = std::min(from.size(), to.size());
+  std::size_t begin =
+      std::mismatch(from.begin(), from.begin() + shorter, to.begin()).first - from.begin();
+  while (begin > 0 && !(ends(from, begin) && ends(to, begin))) --begin;
+  const auto last = std::mismatch(from.rbegin(), from.rbegin() + (shorter - begin), to.rbegin());
+  std::size_t end = last.first - from.rbegin();  // bytes that both end with
+  while (end > 0 && !ends(from, from.size() - end)) --end;
+  return {.at = begin,
+          .removed = std::string(from.substr(begin, from.size() - end - begin)),
+          .inserted = std::string(to.substr(begin, to.size() - end - begin))};
 }
 
 }  // namespace pliant::edit

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pliant {
@@ -25,6 +26,10 @@ std::string made(const std::string& text, const EditBatch& batch);
 
 /// The changes that take them back.
 EditBatch reversed(const EditBatch& batch);
+
+/// The change between two texts: what both begin with and what both end with stays, in whole
+/// characters of UTF-8.
+TextEdit difference(std::string_view from, std::string_view to);
 
 }  // namespace edit
 
