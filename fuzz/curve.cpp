@@ -188,6 +188,11 @@ void check_edits(const Curve<D>& curve, Input& input) {
   } else {
     check_line(baked.error().message);
   }
+  const auto piece = Curve<D>::make(any_keys<D>(input));
+  check_edit(splice(curve, first, number, curve));
+  if (!piece) return;
+  const auto& keys = piece->keys().keys;
+  check_edit(splice(curve, keys.front().frame, keys.back().frame, *piece));
 }
 
 /// A curve as its sampler plays it, and the limits at its keys.

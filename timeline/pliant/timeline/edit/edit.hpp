@@ -84,6 +84,16 @@ template <int D>
 template <int D>
 [[nodiscard]] Checked<Curve<D>> reverse(const Curve<D>& curve, double pivot);
 
+/// The curve whose keys in [first, last] give way to those of a piece, such as a recorded one. But
+/// for the segments that join them, all values between the keys outside, and between those of the
+/// piece, stay to the bit. What is before and after the keys goes on as the curve's does; that of
+/// the piece does not count. An inner loop is written out, unless it is the curve's and the piece
+/// is beside all its copies. Errors: a frame that is not finite; last < first; a key of the piece
+/// outside [first, last].
+template <int D>
+[[nodiscard]] Checked<Curve<D>> splice(const Curve<D>& curve, double first, double last,
+                                       const Curve<D>& piece);
+
 extern template Checked<Curve<1>> insert_key(const Curve<1>&, double);
 extern template Checked<Curve<3>> insert_key(const Curve<3>&, double);
 extern template Checked<Curve<1>> delete_key(const Curve<1>&, std::size_t);
@@ -98,5 +108,7 @@ extern template Checked<Curve<1>> scale(const Curve<1>&, const Scaling<1>&);
 extern template Checked<Curve<3>> scale(const Curve<3>&, const Scaling<3>&);
 extern template Checked<Curve<1>> reverse(const Curve<1>&, double);
 extern template Checked<Curve<3>> reverse(const Curve<3>&, double);
+extern template Checked<Curve<1>> splice(const Curve<1>&, double, double, const Curve<1>&);
+extern template Checked<Curve<3>> splice(const Curve<3>&, double, double, const Curve<3>&);
 
 }  // namespace pliant

@@ -98,7 +98,7 @@ class Insertion {
       *side = {};  // for a single key
     }
     Extrapolation<D>& side = is_before ? result_.before : result_.after;
-    const Value<D> slope = is_before ? shape_.before : shape_.after;
+    const Value<D> slope = *(is_before ? shape_.before : shape_.after);
     const std::size_t old_end = is_before ? 0 : keys().size() - 1;
     // The old end key's outer tangent is not read any more.
     (is_before ? shape_.keys[old_end].in : shape_.keys[old_end].out).reset();

@@ -97,15 +97,15 @@ bool keep_slopes(CurveKeys<D>& author, const Shape<D>& shape, const Slack& slack
 }
 
 template <int D>
-bool keep_line(Extrapolation<D>& outside, const Value<D>& slope, const Value<D>& wanted,
-               double span, const Slack& slack) {
-  if (outside.kind != Extrapolation<D>::Kind::Linear) return false;
+bool keep_line(Extrapolation<D>& outside, const Value<D>& slope,
+               const std::optional<Value<D>>& wanted, double span, const Slack& slack) {
+  if (!wanted || outside.kind != Extrapolation<D>::Kind::Linear) return false;
   // Slopes that differ by rounding alone are equal.
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  if (agrees<D>(slope, wanted, 1, {0, 4 * epsilon})) return false;
-  if (agrees<D>(slope, wanted, span, slack)) return false;
+  if (agrees<D>(slope, *wanted, 1, {0, 4 * epsilon})) return false;
+  if (agrees<D>(slope, *wanted, span, slack)) return false;
   outside.kind = Extrapolation<D>::Kind::Slope;
-  outside.slope = wanted;
+  outside.slope = *wanted;
   return true;
 }
 

@@ -29,8 +29,9 @@ struct KeySlopes {
 template <int D>
 struct Shape {
   std::vector<KeySlopes<D>> keys;
-  Value<D> before = {};  ///< slope before the first key, read by `linear` [unit/frame]
-  Value<D> after = {};
+  /// Slope before the first key, read by `linear` [unit/frame]; nullopt: it follows the keys.
+  std::optional<Value<D>> before = {};
+  std::optional<Value<D>> after = {};
 };
 
 /// Allowed change by rounding: values [unit] and frames. Default: none.

@@ -134,8 +134,8 @@ Shape<D> reversed(const Shape<D>& shape) {
     if (slopes.out) slopes.out = negative<D>(*slopes.out);
     result.keys.push_back(slopes);
   }
-  result.before = negative<D>(shape.after);
-  result.after = negative<D>(shape.before);
+  result.before = negative<D>(*shape.after);
+  result.after = negative<D>(*shape.before);
   return result;
 }
 

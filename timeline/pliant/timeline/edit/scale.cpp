@@ -81,8 +81,8 @@ Shape<D> mapped(Shape<D> shape, const Mapping<D>& map) {
     if (key.in) key.in = map.slope_of(*key.in);
     if (key.out) key.out = map.slope_of(*key.out);
   }
-  shape.before = map.slope_of(shape.before);
-  shape.after = map.slope_of(shape.after);
+  shape.before = map.slope_of(*shape.before);
+  shape.after = map.slope_of(*shape.after);
   return shape;
 }
 

@@ -10,6 +10,7 @@
 
 #include "pliant/timeline/compile.hpp"
 #include "pliant/timeline/edit/bernstein.hpp"
+#include "pliant/timeline/edit/frames.hpp"
 #include "pliant/timeline/edit/preserve.hpp"
 #include "pliant/timeline/edit/split.hpp"
 #include "pliant/timeline/number_text.hpp"
@@ -133,15 +134,7 @@ class Fitter {
 };
 
 std::optional<Complaint> fault_of(double first, double last, double max_error) {
-  for (const auto& [name, number] : {std::pair{"first", first}, std::pair{"last", last}}) {
-    if (std::isfinite(number)) continue;
-    return Complaint{
-        0, std::string(name) + " is " + number_text(number) + "; it must be a finite frame"};
-  }
-  if (last < first) {
-    return Complaint{0, "last is frame " + number_text(last) +
-                            "; it must not come before first, frame " + number_text(first)};
-  }
+  if (auto fault = fault_of_frames(first, last)) return fault;
   if (!std::isfinite(max_error) || max_error < 0) {
     return Complaint{0, "greatest error is " + number_text(max_error) +
                             "; it must be a finite number of at least 0"};
