@@ -161,6 +161,10 @@ std::optional<Operation> operation_of(std::string_view line, const Scene& scene)
       return edit::SetCurve{in.path(), in.keys_of_a_curve<1>()};
     case 'V':
       return edit::SetCurve{in.path(), in.keys_of_a_curve<3>()};
+    case 'l':
+      return edit::Splice{in.path(), in.number(), in.number(), in.keys_of_a_curve<1>()};
+    case 'L':
+      return edit::Splice{in.path(), in.number(), in.number(), in.keys_of_a_curve<3>()};
     case 'p':
       return edit::SetPart{in.text(), in.text(), in.attributes(), in.text()};
     case '+':

@@ -479,6 +479,73 @@ TEST_CASE("a whole curve is given", "[document]") {
              contains_text("cannot be animated"));
 }
 
+TEST_CASE("a piece takes the place of keys", "[document]") {
+  // Keys outside keep their bytes and comments; one at an old frame is written in its place.
+  const edit::Splice recorded{"poke.forceRadius", 10, 25, curve_of<1>({{11, 3}, {24, 2}})};
+  CHECK(after(shot, {recorded}) ==
+        with(with(shot, "      <key frame=\"12\" value=\"2.50\" tangent=\"flat\"/>",
+                  "      <key frame=\"11\" value=\"3\"/>"),
+             "value=\"1\" interpolation=\"step\"", "value=\"2\""));
+  // An automatic tangent that would change becomes a number.
+  const std::string automatic = with(with(shot, " interpolation=\"step\"", ""), "value=\"3e0\"/>",
+                                     "value=\"3e0\"/>\n      <key frame=\"40\" value=\"3.5\"/>");
+  const std::string text =
+      after(automatic, {edit::Splice{"poke.forceRadius", 10, 25, curve_of<1>({{20, 3}})}});
+  CHECK_THAT(text, contains_text("<key frame=\"36\" value=\"3e0\" out=\"0.1"));
+  CHECK_THAT(text, contains_text("<key frame=\"1\" value=\"1.0\"/> <!-- start -->"));
+  // A constant becomes the piece alone.
+  const auto piece = curve_of<3>({{1, 2}, {4, 3}});
+  CHECK(after(shot, {edit::Splice{"bulge.center", 1, 4, piece}}) ==
+        after(shot, {edit::SetCurve{"bulge.center", piece}}));
+  // A whole curve, with the sides that it had.
+  const std::string repeating =
+      with(shot, "attribute=\"forceRadius\"", "attribute=\"forceRadius\" after=\"repeat\"");
+  const auto keys =
+      document_of(after(repeating,
+                        {edit::Splice{"poke.forceRadius", 0, 50, curve_of<1>({{2, 2}, {4, 3}})}}))
+          .scene()
+          .forces[0]
+          .force_radius.curve()
+          .keys();
+  CHECK(keys.keys == curve_of<1>({{2, 2}, {4, 3}}).keys);
+  CHECK(keys.after.kind == Extrapolation<1>::Kind::Repeat);
+
+  // What the channel cannot have.
+  const auto refused = [](const std::string& of, const std::string& channel, double first,
+                          double last, const std::variant<CurveKeys<1>, CurveKeys<3>>& keys) {
+    return refusal(of, {edit::Splice{channel, first, last, keys}});
+  };
+  CHECK(refused(shot, "poke.forceRadius", 10, 25, curve_of<1>({{26, 3}})) ==
+        "shot.xml: error: poke.forceRadius: the piece has a key at frame 26; it must be from frame "
+        "10 to 25");
+  CHECK_THAT(refused(shot, "poke.magnitude", 10, 25, curve_of<1>({{9, 3}})),
+             contains_text("it must be from frame 10 to 25"));
+  CHECK_THAT(refused(shot, "poke.magnitude", 9, 1, curve_of<1>({{9, 3}})),
+             contains_text("must not come before first"));
+  CHECK_THAT(refused(shot, "poke.magnitude", 1, 2, curve_of<3>({{1, 2}})),
+             contains_text("single numbers"));
+  CHECK_THAT(refused(shot, "poke.forceRadius", 1, 2, CurveKeys<1>{}),
+             contains_text("poke.forceRadius"));
+  CHECK_THAT(refused(shot, "poke.center.x", 1, 2, curve_of<1>({{1, 2}})),
+             contains_text("cannot be animated"));
+  CHECK_THAT(refused(shot, "nobody.center", 1, 2, curve_of<1>({{1, 2}})),
+             contains_text("nothing is named"));
+  const std::string other =
+      "<scene start=\"1\" end=\"9\"><surface name=\"s\"><grid columns=\"5\" rows=\"5\"/>"
+      "<tangents su0=\"1\"><animate attribute=\"sv0\"><key frame=\"1\" value=\"1\"/></animate>"
+      "</tangents></surface><point name=\"f\"><falloff><key at=\"0\" value=\"1\"/></falloff>"
+      "<path attribute=\"center\"><waypoint at=\"0 0 0\"/><waypoint at=\"1 0 0\"/>"
+      "<waypoint at=\"1 1 0\"/></path></point></scene>";
+  CHECK_THAT(refused(other, "f.center", 1, 2, curve_of<3>({{1, 2}})),
+             contains_text("f.center follows a path; its keys are those of f.center.progress"));
+  CHECK_THAT(refused(other, "f.falloff", 0, 1, curve_of<1>({{1, 2}})),
+             contains_text("cannot be animated"));
+  CHECK_THAT(refused(other, "s.sv0", 1, 2, curve_of<3>({{1, 2}})),
+             contains_text("s.sv0: its keys have single numbers, those of the piece vectors"));
+  CHECK_THAT(after(other, {edit::Splice{"f.center.progress", 1, 4, curve_of<1>({{1, 0}, {4, 1}})}}),
+             contains_text("<animate attribute=\"progress\">"));
+}
+
 TEST_CASE("a part of a surface is set as a whole, with its comment", "[document]") {
   const edit::SetPart soft{"sheet", "material", {{"density", "4"}, {"b", "2"}}, "Soft:\nsags."};
   const std::string once = after(shot, {soft});
@@ -533,6 +600,11 @@ TEST_CASE("keys with a $ stay, unless they would have to change", "[document]") 
   CHECK_THAT(refusal(text, {edit::Scale{{"f.center"}, 2}}), contains_text("no multiples"));
   CHECK_THAT(refusal(text, {edit::Scale{{"f.forceRadius"}, 2}}),
              contains_text("its <animate> has a value with $"));
+  // A piece has numbers; what it does not replace stays.
+  CHECK(after(text, {edit::Splice{"f.magnitude", 1, 6, curve_of<1>({{5, 9}})}}) ==
+        with(with(text, "      <key frame=\"1\" value=\"1\"/>\n      <key frame=\"5\"",
+                  "      <key frame=\"5\""),
+             "$far * 2", "9"));
   // A curve that is given as a whole has numbers.
   CHECK(after(text, {edit::SetCurve{"f.magnitude", curve_of<1>({{1, 1}, {5, 9}, {8, 7}})}}) ==
         with(text, "$far * 2", "9"));

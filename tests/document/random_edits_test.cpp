@@ -16,6 +16,7 @@
 #include "pliant/scene/channels.hpp"
 #include "pliant/scene/checks/channel_check.hpp"
 #include "pliant/scene/read.hpp"
+#include "pliant/timeline/edit/edit.hpp"
 #include "support/catch.hpp"
 #include "support/random_scene.hpp"
 #include "support/sanitized.hpp"
@@ -188,6 +189,21 @@ struct ReadBack {
           return has_same_shape(Curve<D>::make(*now).value(), Curve<D>::make(keys).value());
         },
         set.keys);
+  }
+  std::string operator()(const edit::Splice& splice) {
+    return std::visit(
+        [&]<int D>(const CurveKeys<D>& keys) -> std::string {
+          ReadBack old{before, before};
+          const CurveKeys<D>* const was = old.keys_of<D>(splice.channel);
+          const CurveKeys<D>* const now = keys_of<D>(splice.channel);
+          // As of SetCurve.
+          if (!now) return D == 3 && keys_of<1>(splice.channel) ? "" : "no such curve";
+          const Curve<D> piece = Curve<D>::make(keys).value();
+          const Curve<D> curve = was ? Curve<D>::make(*was).value() : piece;
+          const auto wanted = pliant::splice(curve, splice.first, splice.last, piece);
+          return has_same_shape(Curve<D>::make(*now).value(), wanted.value());
+        },
+        splice.keys);
   }
   std::string operator()(const edit::Scale& scale) {
     const std::string& path = scale.channels[0];

@@ -44,7 +44,7 @@ class RandomOperation {
 
   Operation make() {
     if (objects_.empty()) return addition();
-    switch (chance_.below(animated_.empty() ? 14 : 29)) {
+    switch (chance_.below(animated_.empty() ? 14 : 31)) {
       case 0:
       case 1:
         return edit::Set{chance_.of(channels_), value()};
@@ -110,6 +110,9 @@ class RandomOperation {
                               chance_.once_in(3)};
       case 27:
         return edit::SimplifyKeys{{chance_.of(animated_)}, chance_.once_in(5) ? 0 : 0.1};
+      case 28:
+      case 29:
+        return splice();
       default:
         return edit::Freeze{{chance_.of(animated_)}, frame()};
     }
@@ -249,6 +252,16 @@ class RandomOperation {
           }
         },
         found->channel);
+  }
+  /// The same as a piece of the channel's curve.
+  Operation splice() {
+    auto set = std::get<edit::SetCurve>(set_curve());
+    const double first = chance_.between(-8, 20) / 2.0;
+    const double last = first + chance_.between(0, 12) / 2.0;
+    const auto is_outside = [&](const auto& key) { return key.frame < first || key.frame > last; };
+    if (!chance_.once_in(8))
+      std::visit([&](auto& keys) { std::erase_if(keys.keys, is_outside); }, set.keys);
+    return edit::Splice{set.channel, first, last, set.keys};
   }
   Operation addition() {
     edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "blob"}), new_name()};

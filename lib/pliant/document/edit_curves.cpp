@@ -119,20 +119,26 @@ Result<void> Editor::scale_constant(const Spot& spot, const Scale& scale) {
   return set_constant(spot, result);
 }
 
+/// The curve of keys that a channel may have.
 template <int D>
-Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
-  using xml::ValueKind;
+Result<Curve<D>> Editor::curve_for(const Spot& spot, const CurveKeys<D>& keys) const {
   const std::string& type = spot.format.type;
-  const bool is_boolean = type == "boolean";
   if (!spot.format.is_keyable || spot.component)
     return draft_.refuse(fmt::format("{} cannot be animated", spot.path));
   if (type != "number or vector" && (type == "vector") != (D == 3))
     return draft_.refuse(fmt::format("{} has {}, so its keys cannot have {}", spot.path,
                                      D == 3 ? "single numbers" : "vectors of three numbers",
                                      D == 3 ? "vectors" : "single numbers"));
-  const auto curve = Curve<D>::make(keys, draft_.should_stop());
-  if (!curve && curve.error().kind == Complaint::Kind::Interrupted) return interrupted();
-  if (!curve) return draft_.refuse(fmt::format("{}: {}", spot.path, curve.error().message));
+  auto curve = Curve<D>::make(keys, draft_.should_stop());
+  if (curve) return *std::move(curve);
+  if (curve.error().kind == Complaint::Kind::Interrupted) return interrupted();
+  return draft_.refuse(fmt::format("{}: {}", spot.path, curve.error().message));
+}
+
+template <int D>
+Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
+  using xml::ValueKind;
+  if (const auto curve = curve_for(spot, keys); !curve) return fail(curve.error());
   if (on_path(spot)) return curve_of(spot).map([](const auto&) {});
   if (const auto old = animated(spot)) {
     const auto present = curve_of(spot);
@@ -148,9 +154,9 @@ Result<void> Editor::set_curve(const Spot& spot, const CurveKeys<D>& keys) {
     if (auto done = draft_.commit(); !done) return done;
     return set_curve(*this->spot(spot.path), keys);
   }
-  const ValueKind kind = D == 3       ? ValueKind::Vector
-                         : is_boolean ? ValueKind::Boolean
-                                      : ValueKind::Number;
+  const ValueKind kind = D == 3                          ? ValueKind::Vector
+                         : spot.format.type == "boolean" ? ValueKind::Boolean
+                                                         : ValueKind::Number;
   return insert_animate(spot,
                         xml::curve_element(spot.attribute(), keys, kind, draft_.should_stop()));
 }
@@ -159,6 +165,43 @@ Result<void> Editor::operator()(const SetCurve& set) {
   const auto spot = this->spot(set.channel);
   if (!spot) return fail(spot.error());
   return std::visit([&](const auto& keys) { return set_curve(*spot, keys); }, set.keys);
+}
+
+template <int D>
+Result<void> Editor::splice(const Spot& spot, const Splice& splice, const CurveKeys<D>& keys) {
+  const auto piece = curve_for(spot, keys);
+  if (!piece) return fail(piece.error());
+  const auto refuse = [&](const Complaint& complaint) {
+    return draft_.refuse(fmt::format("{}: {}", spot.path, complaint.message));
+  };
+  if (!animated(spot)) {
+    const auto alone = pliant::splice(*piece, splice.first, splice.last, *piece);
+    return alone ? set_curve(spot, alone->keys()) : refuse(alone.error());
+  }
+  const auto present = curve_of(spot);
+  if (!present) return fail(present.error());
+  const auto* const curve = std::get_if<KeyedCurve<D>>(&*present);
+  if (!curve)
+    return draft_.refuse(fmt::format("{}: its keys have {}, those of the piece {}", spot.path,
+                                     D == 3 ? "single numbers" : "vectors",
+                                     D == 3 ? "vectors" : "single numbers"));
+  const auto result = pliant::splice(curve->curve, splice.first, splice.last, *piece);
+  if (!result) return refuse(result.error());
+  std::vector<KeyEntry<D>> entries = entries_of(*curve, result->keys());
+  // A new value takes the place of a computed one.
+  for (KeyEntry<D>& entry : entries) {
+    const bool is_new = entry.key.frame >= splice.first && entry.key.frame <= splice.last;
+    if (is_new && entry.origin && is_computed(draft_, curve->elements[*entry.origin]))
+      entry.origin.reset();
+  }
+  return write_curve(*curve, result->keys(), entries);
+}
+
+Result<void> Editor::operator()(const Splice& splice) {
+  const auto spot = this->spot(splice.channel);
+  if (!spot) return fail(spot.error());
+  return std::visit([&](const auto& keys) { return this->splice(*spot, splice, keys); },
+                    splice.keys);
 }
 
 }  // namespace pliant::edit

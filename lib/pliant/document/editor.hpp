@@ -60,6 +60,7 @@ class Editor {
   Result<void> operator()(const SimplifyKeys& simplification);
   Result<void> operator()(const Scale& scale);
   Result<void> operator()(const SetCurve& set);
+  Result<void> operator()(const Splice& splice);
 
   // Objects: edit_objects.cpp and edit_groups.cpp.
   Result<void> operator()(const Add& addition);
@@ -133,7 +134,11 @@ class Editor {
   Result<void> commit_rewritten(const std::string& channel);
   Result<void> scale_constant(const Spot& spot, const Scale& scale);
   template <int D>
+  Result<Curve<D>> curve_for(const Spot& spot, const CurveKeys<D>& keys) const;
+  template <int D>
   Result<void> set_curve(const Spot& spot, const CurveKeys<D>& keys);
+  template <int D>
+  Result<void> splice(const Spot& spot, const Splice& splice, const CurveKeys<D>& keys);
 
   // Objects.
   Result<ElementIndex> force(std::string_view name) const;

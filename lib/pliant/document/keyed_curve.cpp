@@ -46,16 +46,6 @@ Result<AnyCurve> read_curve_of(const Draft& draft, ElementIndex animate, xml::Va
                    .curve = *std::move(curve)});
 }
 
-/// Whether the value of an attribute is computed; `$$` is not, but is taken for it.
-bool is_computed(const Draft& draft, const xml::AttributePlace& attribute) {
-  return xml::decoded(attribute.value.of(draft.text())).find('$') != std::string::npos;
-}
-
-bool is_computed(const Draft& draft, ElementIndex element) {
-  return std::ranges::any_of(draft.attributes(element),
-                             [&](const auto& one) { return is_computed(draft, one); });
-}
-
 /// The curve of a channel that has keys with `$`.
 Result<AnyCurve> read_computed_curve(const Draft& draft, ElementIndex animate,
                                      const std::string& channel, const ParseScene& parse) {
@@ -100,6 +90,12 @@ bool has_wide_values(const Draft& draft, ElementIndex animate) {
 }
 
 }  // namespace
+
+bool is_computed(const Draft& draft, ElementIndex element) {
+  return std::ranges::any_of(draft.attributes(element), [&](const xml::AttributePlace& one) {
+    return xml::decoded(one.value.of(draft.text())).find('$') != std::string::npos;
+  });
+}
 
 Result<AnyCurve> read_keyed_curve(const Draft& draft, ElementIndex animate, std::string_view type,
                                   const std::string& channel, const ParseScene& parse) {

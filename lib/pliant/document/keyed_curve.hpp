@@ -36,8 +36,15 @@ struct KeyEntry {
   std::optional<std::size_t> origin = {};  ///< the key that it was; null: a new one
 };
 
+/// Keys in place of those of a curve at the same frames.
+template <int D>
+std::vector<KeyEntry<D>> entries_of(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted);
+
 /// The text `now` with those words of `old` that say the same, and its blanks if it has as many.
 std::string changed_words(std::string_view old, std::string_view now);
+
+/// Whether an attribute of an element is computed; `$$` is not, but is taken for it.
+bool is_computed(const Draft& draft, ElementIndex element);
 
 /// Makes the scene of a text.
 using ParseScene = std::function<Result<Scene>(const std::string& text)>;

@@ -82,6 +82,7 @@ struct Describe {
   std::string operator()(const SetCurve& of) const {
     return fmt::format("set curve of {}", of.channel);
   }
+  std::string operator()(const Splice& of) const { return fmt::format("splice {}", of.channel); }
   std::string operator()(const SetPart& of) const {
     return fmt::format("set {} of {}", of.part, of.surface);
   }

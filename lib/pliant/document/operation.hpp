@@ -168,6 +168,16 @@ struct SetCurve {
   std::variant<CurveKeys<1>, CurveKeys<3>> keys;
 };
 
+/// A piece of a curve, such as a recorded one, in place of the keys in [first, last]; its own keys
+/// are there too. Keys outside keep their frames, values and shape; see `splice`. A constant value
+/// becomes the piece alone. Keys at the frames of old ones are written in their place.
+struct Splice {
+  std::string channel;
+  double first = 0;
+  double last = 0;
+  std::variant<CurveKeys<1>, CurveKeys<3>> keys;
+};
+
 // Surfaces, forces and groups.
 
 /// An attribute and its value.
@@ -224,12 +234,12 @@ struct Ungroup {
 }  // namespace edit
 
 /// One change of a scene file.
-using Operation =
-    std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
-                 edit::DeleteKeys, edit::MoveKeys, edit::SetTangent, edit::SetHandle,
-                 edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys, edit::SimplifyKeys,
-                 edit::Scale, edit::SetCurve, edit::SetPart, edit::Add, edit::Duplicate,
-                 edit::Delete, edit::Rename, edit::Target, edit::Group, edit::Ungroup>;
+using Operation = std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
+                               edit::DeleteKeys, edit::MoveKeys, edit::SetTangent, edit::SetHandle,
+                               edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys,
+                               edit::SimplifyKeys, edit::Scale, edit::SetCurve, edit::Splice,
+                               edit::SetPart, edit::Add, edit::Duplicate, edit::Delete,
+                               edit::Rename, edit::Target, edit::Group, edit::Ungroup>;
 
 /// What an operation does, for people: `set poke.magnitude`, `move 3 keys of poke.center`.
 std::string described(const Operation& operation);

@@ -288,9 +288,8 @@ Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>&
   return write_keys(present, keys);
 }
 
-/// Keys at the frames of old ones are written in their place.
 template <int D>
-Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted) {
+std::vector<KeyEntry<D>> entries_of(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted) {
   std::vector<KeyEntry<D>> entries;
   std::size_t old = 0;
   for (const Key<D>& key : wanted.keys) {
@@ -298,8 +297,16 @@ Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>&
     const bool is_there = old < curve.keys().size() && curve.keys()[old].frame == key.frame;
     entries.push_back({key, is_there ? std::optional(old) : std::nullopt});
   }
-  return write_curve(curve, wanted, entries);
+  return entries;
 }
+
+template <int D>
+Result<void> Editor::write_curve(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted) {
+  return write_curve(curve, wanted, entries_of(curve, wanted));
+}
+
+template std::vector<KeyEntry<1>> entries_of(const KeyedCurve<1>&, const CurveKeys<1>&);
+template std::vector<KeyEntry<3>> entries_of(const KeyedCurve<3>&, const CurveKeys<3>&);
 
 template Result<void> Editor::write_curve(const KeyedCurve<1>&, const CurveKeys<1>&);
 template Result<void> Editor::write_curve(const KeyedCurve<3>&, const CurveKeys<3>&);
