@@ -123,6 +123,8 @@ TEST_CASE("a constant takes the place of a curve", "[document]") {
   CHECK(after(shot, {edit::Reset{"poke.forceRadius"}}) == without);
   CHECK(after(shot, {edit::Freeze{{"poke.forceRadius"}, 30}}) ==
         with(constant, "forceRadius=\"7\"", "forceRadius=\"1\""));
+  CHECK_THAT(refusal(shot, {edit::Freeze{{"poke.forceRadius"}, -INFINITY}}),
+             contains_text("the frame must be finite, not -inf"));
   CHECK(after(constant, {edit::Animate{{"poke.forceRadius"}, 5}}) ==
         with(with(constant, " forceRadius=\"7\"", ""), "2.50\">\n",
              "2.50\">\n    <animate attribute=\"forceRadius\">\n      <key frame=\"5\" "

@@ -1,6 +1,7 @@
 // Operations on constant values, and between constants and curves.
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -174,6 +175,8 @@ Result<void> Editor::insert_animate(const Spot& spot, const xml::ElementText& an
 }
 
 Result<void> Editor::operator()(const Freeze& freeze) {
+  if (!std::isfinite(freeze.frame))
+    return draft_.refuse(fmt::format("the frame must be finite, not {}", freeze.frame));
   for (const std::string& channel : freeze.channels) {
     const auto spot = this->spot(channel);
     if (!spot) return fail(spot.error());
