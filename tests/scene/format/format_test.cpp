@@ -7,7 +7,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include "pliant/scene/format/format_json.hpp"
 #include "scene/scene_text.hpp"
 #include "support/places.hpp"
 #include "support/scratch_folder.hpp"
@@ -132,6 +134,95 @@ TEST_CASE("the page has one row for each attribute, as the reader knows it", "[s
       rows.erase(found);
     }
   for (const auto& [key, row] : rows) FAIL_CHECK("the reader does not know " << key);
+}
+
+TEST_CASE("the format as JSON is the tables of the page", "[scene][format]") {
+  const auto text_of = [](const nlohmann::json& json, const char* name) {
+    std::string text = json.value(name, "");
+    std::erase(text, '`');
+    return text;
+  };
+  const auto json = nlohmann::json::parse(scene_format_json());
+  std::map<std::string, Row> rows;
+  for (const Row& row : documented()) rows.emplace(key_of(row.element, row.attribute), row);
+  std::vector<std::vector<std::string>> elements;
+  for (const auto& element : json.at("elements")) {
+    const std::string name = element.at("name");
+    const std::vector<std::string> parents = element.at("parents");
+    elements.push_back({name, fmt::format("{}", fmt::join(parents, ", ")), element.at("meaning")});
+    for (const auto& attribute : element.at("attributes")) {
+      const std::string key = key_of(name, attribute.at("name").get<std::string>());
+      CAPTURE(key);
+      REQUIRE(rows.contains(key));
+      const Row& row = rows.at(key);
+      CHECK(attribute.at("type") == row.type);
+      CHECK(text_of(attribute, "unit") == row.unit);
+      CHECK(text_of(attribute, "range") == row.range);
+      CHECK(text_of(attribute, "meaning") == row.meaning);
+      CHECK(attribute.at("keyable") == (row.keyable == "yes"));
+      CHECK(attribute.at("required") == (row.standard == "required"));
+      CHECK(text_of(attribute, "default") == (row.standard == "required" ? "" : row.standard));
+      rows.erase(key);
+    }
+  }
+  CHECK(rows.empty());
+  std::vector<std::vector<std::string>> documented_elements;
+  for (const auto& cells : rows_below("stands in"))
+    documented_elements.push_back({cells[0], cells[1], cells[3]});
+  CHECK(elements == documented_elements);
+}
+
+TEST_CASE("the format as JSON has what programs need of each row", "[scene][format]") {
+  const auto json = nlohmann::json::parse(scene_format_json());
+  REQUIRE(json.at("elements").size() == scene_format().size());
+  std::size_t element = 0, with_words = 0;
+  for (const ElementFormat& format : scene_format()) {
+    const nlohmann::json& one = json.at("elements").at(element++);
+    CHECK(one.at("mayInclude") == format.may_include);
+    REQUIRE(one.at("children").size() == format.children.size());
+    CHECK(one.contains("text") == format.text.has_value());
+    for (std::size_t k = 0; k < format.children.size(); ++k) {
+      const ChildFormat& child = format.children[k];
+      const nlohmann::json& row = one.at("children").at(k);
+      CHECK(row.at("names") == nlohmann::json(child.names));
+      CHECK(row.at("least") == child.row.least);
+      CHECK(row.value("most", unlimited) == child.row.most);
+      CHECK(row.at("part") == child.is_part);
+      CHECK(row.value("noun", "") == child.row.noun);
+    }
+    std::size_t attribute = 0;
+    for (const AttributeFormat& of : format.attributes) {
+      if (of.need == Need::Later) continue;
+      const nlohmann::json& row = one.at("attributes").at(attribute++);
+      CAPTURE(format.name, of.name);
+      Range range;
+      range.least = row.value("least", range.least);
+      range.most = row.value("most", range.most);
+      range.excludes_least = row.value("excludesLeast", false);
+      range.excludes_zero = row.value("excludesZero", false);
+      CHECK(range.to_text() == of.limits.to_text());
+      CHECK(row.value("position", false) == of.is_position);
+      // An <animate> names a channel of what it stands in.
+      const bool is_of_words = (of.type == "word" && of.name != "attribute") ||
+                               of.type == "one or four words" || of.type == "tangent" ||
+                               of.type == "interpolation" || of.type == "extrapolation";
+      if (of.type != "boolean") CHECK(row.contains("words") == is_of_words);
+      if (of.type == "word" || !is_of_words) {
+        const std::vector<std::string_view> words(of.words.begin(), of.words.end());
+        CHECK(row.value("words", nlohmann::json::array()) == nlohmann::json(words));
+      }
+      if (!is_of_words) continue;
+      ++with_words;
+      // The default is one of them, or begins with one.
+      const std::string standard = row.value("default", "");
+      if (standard.empty() || standard.starts_with('(')) continue;
+      const std::vector<std::string> words = row.at("words");
+      const std::string first = standard.substr(0, standard.find(' '));
+      CHECK(std::ranges::find(words, first) != words.end());
+    }
+    CHECK(attribute == one.at("attributes").size());
+  }
+  CHECK(with_words > 10);
 }
 
 /// Whether the element is a direct child of a scene with a name: a force or a group.
