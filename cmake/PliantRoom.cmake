@@ -73,6 +73,12 @@ function(pliant_build_fast target)
     $<$<CONFIG:Release>:-O1 $<$<CXX_COMPILER_ID:GNU>:-fno-tree-pta>>)
 endfunction()
 
+# pliant_make_early(NAME file...): makes sources by custom commands before anything is linked. Commands
+# of a library's sources alone wait for all that it links, and so does all that uses the library.
+function(pliant_make_early name)
+  add_custom_target(${name} DEPENDS ${ARGN})
+endfunction()
+
 # pliant_room(NAME [LAYERS folder ...] SOURCES a.cpp ... HEADERS a.hpp ... [PUBLIC lib ...] [PRIVATE lib ...])
 # makes the library pliant_NAME, alias pliant::NAME. Paths are relative to the room's own folder,
 # which is <include root>/pliant/NAME, with a slash for an underscore. LAYERS: see
