@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -80,7 +81,7 @@ TEST_CASE("an edit that breaks a rule is refused as without a shelf, and can be 
       {"scene.end=12"},
       {"scene.start=-4"},
       {"sheet.preroll=2"},
-      {"scene.fps=0.001"},
+      {"scene.fps=0.0001"},
       {"sheet.dt=1e-5", "scene.fps=0.1"},
       {"other.su0=1"},
       {"sheet.reference=none", "sheet.goal=1"},
@@ -121,6 +122,50 @@ TEST_CASE("an edit of a force makes no shape anew", "[simulation][shelf]") {
   // A mesh in memory is another one if a number of it differs.
   std::get<Mesh>(s.surfaces[0].shape).positions(60, 1) += 0.5;
   CHECK(told(s, shared) == told(s));
+}
+
+TEST_CASE("a driven surface is bound anew only if one of the two is another",
+          "[simulation][shelf]") {
+  Shelf shelf(std::size_t{1} << 30);
+  const SimulationOptions shared{.shelf = &shelf};
+  Surface driver = sheet("driver"), skin = sheet("skin", 20);
+  skin.driven_by = "driver";
+  skin.shape = make_mesh(std::get<GridSheet>(skin.shape));
+  skin.transform.scale = Value<3>{0.6, 1, 0.6};
+  const int kind = GENERATE(0, 1, 2);
+  if (kind == 1) driver.shape = make_mesh(std::get<GridSheet>(driver.shape));
+  if (kind == 2) driver.reading.uv = UvReading::Surface;
+  Scene s = scene({driver, skin}, {poke("poke", {0, 0, 0})}, 4);
+  REQUIRE(told(s, shared) == told(s));
+  std::size_t before = shelf.kept();
+  s.forces[0].magnitude = 4000;
+  REQUIRE(Simulation::make(s, shared));
+  CHECK(shelf.kept() == before + 1);  // that the force is sound
+  const std::vector<std::function<void()>> edits = {
+      [&] {
+        s.surfaces[1].transform.translate = Value<3>{1, 0.5, 0};
+      },
+      [&] {
+        s.surfaces[0].transform.rotate = vector_curve({{1, {0, 9, 0}}, {4, {0, 20, 0}}});
+      },
+      [&] { std::get<Mesh>(s.surfaces[1].shape).positions(7, 1) += 0.25; },
+      [&] {
+        auto* const mesh = std::get_if<Mesh>(&s.surfaces[0].shape);
+        if (mesh)
+          mesh->positions(30, 1) += 0.25;
+        else
+          std::get<GridSheet>(s.surfaces[0].shape).width = 11;
+      }};
+  for (const auto& edit : edits) {
+    edit();
+    const std::vector<std::string> expected = told(s);
+    before = shelf.kept();
+    CHECK(told(s, shared) == expected);
+    CHECK(shelf.kept() >= before + 2);  // that the surface is sound or its shape, and the binding
+    before = shelf.kept();
+    CHECK(told(s, shared) == expected);
+    CHECK(shelf.kept() == before);
+  }
 }
 
 TEST_CASE("a file that changes is read again, whatever the shelf has", "[simulation][shelf]") {

@@ -10,4 +10,8 @@ namespace pliant {
 Result<ReservedShape> find_rest_shape(const Surface& surface, const SceneOrigin& origin,
                                       const RunContext& context);
 
+/// The same for `bind_to_driver`. Errors: as there.
+Result<void> find_binding(ReservedShape& driven, const Surface& own, const RestShape& driver,
+                          const Surface& driving, const Scene& scene, const RunContext& context);
+
 }  // namespace pliant

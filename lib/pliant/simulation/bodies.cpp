@@ -179,8 +179,8 @@ Result<void> Bodies::bind_driven(std::span<ReservedShape> made) const {
   for (std::size_t k = 0; k < made.size(); ++k) {
     if (!scene_.surfaces[k].is_driven()) continue;
     if (context_.is_stopped()) return interrupted_at_start();
-    auto bound = bind_to_driver(made[k], scene_.surfaces[k], made[drivers_[k]].shape,
-                                scene_.surfaces[drivers_[k]], scene_, context_.should_stop);
+    auto bound = find_binding(made[k], scene_.surfaces[k], made[drivers_[k]].shape,
+                              scene_.surfaces[drivers_[k]], scene_, context_);
     if (!bound) return bound;
   }
   return {};
