@@ -88,7 +88,9 @@ Result<void> key_rates(Scene& scene) {
   return {};
 }
 
-Result<void> check_to_play_live(const Scene& scene) {
+// Requires: sound options.
+Result<void> check_to_play_live(const Scene& scene, const SimulationOptions& options) {
+  PLIANT_EXPECTS(options.threads >= 1 && is_available(options.solver));
   if (auto sound = check_to_simulate(scene); !sound) return sound;
   for (const Surface& surface : scene.surfaces) {
     if (!surface.solver.loop) continue;
@@ -172,7 +174,6 @@ std::optional<Curve<D>> performed(const Channel<D>& authored, int start,
 /// The bodies at the present frame, and the channels that can be set.
 class LiveSimulation::Run {
  public:
-  /// Requires: `options` are sound.
   Run(Scene scene, const LiveOptions& options)
       : records_(options.records),
         scene_(std::move(scene)),
@@ -182,7 +183,6 @@ class LiveSimulation::Run {
         inputs_(inputs_that_can_be_set(scene_)),
         first_(first_frame_of_run(scene_)),
         frame_(scene_.start) {
-    PLIANT_EXPECTS(options.simulation.threads >= 1 && is_available(options.simulation.solver));
     for (std::size_t k = 0; k < inputs_.size(); ++k) places_.emplace(inputs_[k].path, k);
     const auto is_own = [](const Force& force) {
       return std::holds_alternative<CustomForce>(force.kind);
@@ -461,7 +461,8 @@ Result<Scene> LiveSimulation::Run::performance() const {
 }
 
 Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& options) {
-  if (auto sound = check_to_play_live(scene); !sound) return fail(sound.error());
+  if (auto sound = check_to_play_live(scene, options.simulation); !sound)
+    return fail(sound.error());
   if (auto keyed = key_rates(scene); !keyed) return fail(keyed.error());
   auto run = std::make_unique<Run>(std::move(scene), options);
   auto made = run->make_bodies();
@@ -472,7 +473,8 @@ Result<LiveSimulation> LiveSimulation::make(Scene scene, const LiveOptions& opti
 
 Result<LiveSimulation> LiveSimulation::from_state(Scene scene, std::string_view state_bytes,
                                                   const LiveOptions& options) {
-  if (auto sound = check_to_play_live(scene); !sound) return fail(sound.error());
+  if (auto sound = check_to_play_live(scene, options.simulation); !sound)
+    return fail(sound.error());
   auto run = std::make_unique<Run>(std::move(scene), options);
   auto made = run->make_bodies();
   if (made) made = run->go_to_state(state_bytes);
