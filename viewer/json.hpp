@@ -34,11 +34,4 @@ inline const char* wrap_word(const Grid& grid) {
   return !grid.is_closed_v ? "u" : !grid.is_closed_u ? "v" : "uv";
 }
 
-/// Columns and rows, both ends included, those of a closed grid counted on beyond its end; null: an
-/// empty box.
-inline Json to_json(const Box& box) {
-  if (box.is_empty()) return nullptr;
-  return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};
-}
-
 }  // namespace pliant::viewer

@@ -56,13 +56,11 @@ Json surface_json(const Surface& surface, const SceneFacts::SurfaceFacts& facts)
 }
 
 Json region_json(const RegionPreview& region) {
-  Json parts = Json::array();
-  for (const Box& part : region.region.parts) parts.push_back(to_json(part));
   Json json;
   if (region.counts.cells > 0) {
-    json = to_json(region.counts);
+    json = region.counts;
   } else {
-    json = {{"box", to_json(region.region.box)}, {"parts", parts}};
+    json = {{"box", region.region.box}, {"parts", region.region.parts}};
   }
   json["solvable"] = region.is_solvable;
   json["staticPeak"] = region.static_peak;
@@ -140,7 +138,7 @@ Json preview_json(const Preview& preview, const Scene& scene) {
   json["frame"] = preview.frame ? Json(*preview.frame) : Json(nullptr);
   json["everyFrame"] = preview.is_every_frame;
   if (is_force) json["magnitude"] = preview.magnitude;
-  json["selected"] = preview.counts.cells > 0 ? to_json(preview.counts) : to_json(preview.selected);
+  json["selected"] = preview.counts.cells > 0 ? Json(preview.counts) : Json(preview.selected);
   if (preview.of == Preview::Of::All) json["apart"] = preview.is_apart;
   json["solvable"] = preview.is_solvable;
   json["staticPeak"] = preview.is_solved ? Json(preview.static_peak) : Json(nullptr);

@@ -5,7 +5,6 @@
 
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/json.hpp"
-#include "pliant/simulation/report_json.hpp"
 
 namespace pliant::cli {
 

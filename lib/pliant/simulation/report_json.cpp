@@ -18,17 +18,6 @@ using Json = nlohmann::ordered_json;
 
 Json to_json(const Vector3d& vector) { return {vector[0], vector[1], vector[2]}; }
 
-Json to_json(const Box& box) {
-  if (box.is_empty()) return nullptr;
-  return {{"columns", {box.i0, box.i1}}, {"rows", {box.j0, box.j1}}};
-}
-
-Json to_json(const CutCounts& counts) {
-  return {{"insideNodes", counts.inside_nodes},
-          {"heldNodes", counts.held_nodes},
-          {"cells", counts.cells}};
-}
-
 Force in_world(const Simulation& simulation, const Force& force, int frame) {
   return simulation.in_world(force, frame);
 }
@@ -52,10 +41,10 @@ Json force_json(const ForceReport& report, bool is_surface, const Force* force, 
     json["center"] = to_json(std::get<PointForce>(sampled->kind).center);
   }
   if (is_surface) {
-    json.update(to_json(counts));
+    json.update(Json(counts));
   } else {
-    json["deformationBox"] = to_json(selection.deformation);
-    json["forceBox"] = to_json(selection.force);
+    json["deformationBox"] = selection.deformation;
+    json["forceBox"] = selection.force;
     json["region"] = selection.region < 0 ? Json(nullptr) : Json(selection.region);
   }
   json["pushedNodes"] = push.node_count;
@@ -79,10 +68,8 @@ Json surface_json(const AnySimulation& simulation, std::size_t surface, const Su
   Json regions = Json::array();
   for (std::size_t k = 0; k < report.regions.size(); ++k) {
     const Region& region = report.regions[k];
-    Json parts = Json::array();
-    for (const Box& part : region.parts) parts.push_back(to_json(part));
     const bool is_solved = report.regions[k].is_solved();
-    regions.push_back({{"solved", is_solved}, {"box", to_json(region.box)}, {"parts", parts}});
+    regions.push_back({{"solved", is_solved}, {"box", region.box}, {"parts", region.parts}});
   }
   Json forces = Json::array();
   for (const ForceReport& force : report.forces) {
@@ -95,7 +82,7 @@ Json surface_json(const AnySimulation& simulation, std::size_t surface, const Su
   }
   Json json = {{"name", simulation.scene().surfaces[surface].name},
                {"solved", report.is_solved},
-               {"selected", to_json(report.selected)},
+               {"selected", report.selected},
                {"steps", report.is_solved ? report.steps.count : 0},
                {"dt", report.is_solved ? Json(report.steps.length) : Json(nullptr)},
                {"unknowns", report.unknown_count},
@@ -108,8 +95,7 @@ Json surface_json(const AnySimulation& simulation, std::size_t surface, const Su
   for (const char* of_grid : {"selected", "regions"}) json.erase(of_grid);
   json["grid"] = nullptr;
   json["cut"] = report.cut ? Json(to_text(*report.cut)) : Json(nullptr);
-  json["pieces"] = Json::array();
-  for (const CutCounts& patch : report.patches) json["pieces"].push_back(to_json(patch));
+  json["pieces"] = report.patches;
   return json;
 }
 
