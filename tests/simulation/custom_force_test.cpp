@@ -1,7 +1,6 @@
 #include <atomic>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "pliant/forces/force.hpp"
@@ -258,24 +257,6 @@ TEST_CASE("what a force of many positions leaves out is not finite", "[simulatio
                           },
                       .unit_force = up}),
              contains_text("force \"wind\": its distance at (-6, 0, -6) is -4, but must be"));
-}
-
-TEST_CASE("what a function of many positions throws reaches the caller",
-          "[simulation][custom][threads]") {
-  bool throws = false;
-  Force force = poke("f", {0, 0, 0}, 300);
-  force.kind =
-      CustomForce{.unit_force = [&](Points, const ForceTime& time, std::span<Vector3d> values) {
-        if (throws && time.frame == 3) throw std::runtime_error("no wind");
-        std::ranges::fill(values, Vector3d(0, 1, 0));
-      }};
-  const Scene s = scene({sheet("a"), sheet("b")}, {force});
-  const std::vector<Field> calm = baked(s, "b");
-  throws = true;
-  auto simulation = Simulation::make(s, {.threads = 2}).value();
-  CHECK_THROWS_AS(simulation.at(8), std::runtime_error);
-  throws = false;
-  CHECK(simulation.at(8).value().surface("b").positions() == calm[7]);
 }
 
 TEST_CASE("a function of positions that is made of an empty one is empty", "[forces][custom]") {

@@ -11,6 +11,7 @@
 #include "pliant/scene/write.hpp"
 #include "pliant/states/state_key.hpp"
 #include "support/catch.hpp"
+#include "support/everything.hpp"
 
 // Whatever channel the description of the format has is read, listed, written, sampled and hashed,
 // without a line elsewhere.
@@ -97,15 +98,7 @@ Hash key_of(const Scene& scene) {
 std::vector<double> values_of(const NamedChannel& named) {
   std::vector<double> values;
   for (const double frame : {1.0, 2.5, 4.0, 9.0})
-    std::visit(
-        [&](const auto* channel) {
-          if constexpr (std::is_same_v<decltype(channel), const Switch*>) {
-            values.push_back(channel->at(frame) ? 1 : 0);
-          } else {
-            for (const double number : channel->at(frame)) values.push_back(number);
-          }
-        },
-        named.channel);
+    for (const double number : value_at(named, frame)) values.push_back(number);
   return values;
 }
 

@@ -1,5 +1,8 @@
 #include <cmath>
+#include <cstddef>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "pliant/sampling/sampling.hpp"
 #include "support/catch.hpp"
@@ -189,10 +192,16 @@ TEST_CASE("what a custom force throws reaches the caller, and the simulation liv
           "[simulation][custom][threads]") {
   Scene s = scene({sheet("a"), sheet("b")}, {poke("f", {0, 0, 0}, 300)});
   bool throws = false;
-  s.forces[0].kind = CustomForce{.unit_force = [&](const Vector3d&, const ForceTime& time) {
+  const auto of_one = [&](const Vector3d&, const ForceTime& time) {
     if (throws && time.frame == 3) throw std::runtime_error("no wind");
     return Vector3d(0, 1, 0);
-  }};
+  };
+  const auto of_many = [&](std::span<const Vector3d> points, const ForceTime& time,
+                           std::span<Vector3d> values) {
+    for (std::size_t k = 0; k < points.size(); ++k) values[k] = of_one(points[k], time);
+  };
+  s.forces[0].kind = GENERATE(false, true) ? CustomForce{.unit_force = of_many}
+                                           : CustomForce{.unit_force = of_one};
   const std::vector<Field> calm = baked(s, "b");
   throws = true;
   auto simulation = Simulation::make(s, {.threads = 2}).value();

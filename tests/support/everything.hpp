@@ -57,7 +57,7 @@ inline Scene of_everything() {
 }
 
 /// The numbers of a channel at a frame; of a switch, 0 or 1.
-inline std::vector<double> value_at(const NamedChannel& named, int frame) {
+inline std::vector<double> value_at(const NamedChannel& named, double frame) {
   std::vector<double> value;
   std::visit(
       [&](const auto* channel) {
