@@ -112,7 +112,7 @@ SLOW = {
     "info of many forces": lambda f: ["info", scene(f, "".join(poke(name=k) for k in range(30_000)))],
     "new": lambda f: ["new", "mesh", "--mesh", relief(f, 150), "-o", os.path.join(f, "n.xml"), "--force"],
     "suggest": lambda f: ["suggest", frames(scene(f, poke(), GRID.format(601)), 48), "--peak", "0.1"],
-    "bake of a surface": lambda f: bake(f, surface(f, 150, '<solver region="all"/>')),
+    "bake of a surface": lambda f: bake(f, surface(f, 220, '<solver region="all"/>')),
     "bake of a grid": lambda f: bake(f, scene(f, poke(), GRID.format(1501))),
     "bake of plastic motion": lambda f: bake(f, frames(scene(f, poke("1e4"), GRID.format(61) +
                                              '<material yield="1"/><solver region="all" dt="0.0005"/>'), 24)),
