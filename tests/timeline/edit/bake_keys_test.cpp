@@ -6,6 +6,7 @@
 
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
+#include "support/stopping.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -113,6 +114,19 @@ TEST_CASE("baking says what it cannot do", "[timeline][bake]") {
   CHECK_THAT(message(bake_keys(curve, 1e16, 1e16 + 8, 0.5)), contains_text("strictly increase"));
   CHECK_THAT(message(bake_keys(curve, 0, 1, 1, SegmentKind::Step)),
              contains_text("linear or bezier"));
+}
+
+TEST_CASE("baking of many keys can be stopped", "[timeline][bake][stopping]") {
+  const Curve<1> curve = make({key(0, 0), key(500, 4), key(1000, 1)});
+  check_stops(
+      [&](const StopRequest& should_stop) -> Result<void> {
+        const auto baked =
+            bake_keys(curve, 0, 1000, 0.05, Interpolation::Kind::Bezier, should_stop);
+        if (baked) return {};
+        CHECK(baked.error().kind == Complaint::Kind::Interrupted);
+        return interrupted();
+      },
+      200);
 }
 
 }  // namespace

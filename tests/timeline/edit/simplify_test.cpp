@@ -8,6 +8,7 @@
 #include "pliant/timeline/edit/bake_keys.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
+#include "support/stopping.hpp"
 #include "timeline/authoring.hpp"
 
 namespace pliant::testing {
@@ -165,6 +166,18 @@ TEST_CASE("simplifying says what it cannot do", "[timeline][simplify]") {
   CHECK_THAT(message(simplify(curve, 1, 0, 1)), contains_text("must not come before first"));
   CHECK_THAT(message(simplify(curve, 0, 1, -1)), contains_text("greatest error is -1"));
   CHECK_THAT(message(simplify(curve, 0, 1, nan)), contains_text("greatest error is nan"));
+}
+
+TEST_CASE("simplifying many keys can be stopped", "[timeline][simplify][stopping]") {
+  const Curve<1> curve = make(baked_sine(20'000));
+  check_stops(
+      [&](const StopRequest& should_stop) -> Result<void> {
+        const auto result = simplify(curve, 0, 20'000, 0.5, should_stop);
+        if (result) return {};
+        CHECK(result.error().kind == Complaint::Kind::Interrupted);
+        return interrupted();
+      },
+      100);
 }
 
 }  // namespace

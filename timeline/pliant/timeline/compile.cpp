@@ -26,10 +26,6 @@ constexpr double largest_rate = 1e305;
 // and so rounded to a few of the least numbers.
 constexpr double shortest_bent = 0x1p-900;
 
-tl::unexpected<Complaint> interruption() {
-  return tl::unexpected(Complaint{.message = "interrupted", .kind = Complaint::Kind::Interrupted});
-}
-
 /// The subject of a note. Copies of a key by the loop repeat its notes; only one of each is kept.
 enum class Subject { Left, InTangent, OutTangent, InOvershoot, OutOvershoot, Count };
 

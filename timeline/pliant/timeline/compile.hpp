@@ -19,6 +19,11 @@ struct Compiled {
   std::vector<KeyHandle<D>> handles;  ///< of the Bézier segments, in the order of frames
 };
 
+/// The error of work that was stopped.
+inline tl::unexpected<Complaint> interruption() {
+  return tl::unexpected(Complaint{.message = "interrupted", .kind = Complaint::Kind::Interrupted});
+}
+
 /// Checks the rules and turns keys into segments. Errors: those of `Curve::make`.
 template <int D>
 [[nodiscard]] Checked<Compiled<D>> compile(const CurveKeys<D>& keys,

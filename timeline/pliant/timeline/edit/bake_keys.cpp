@@ -71,16 +71,17 @@ Tangent<D> tangent_of(const Value<D>& slope, const Value<D>& start, const Value<
 
 template <int D>
 Checked<CurveKeys<D>> bake_keys(const Curve<D>& curve, double first, double last, double step,
-                                Interpolation::Kind next) {
+                                Interpolation::Kind next, const StopRequest& should_stop) {
   using namespace timeline;
   if (const auto error = fault_of(first, last, step, next)) return tl::unexpected(*error);
-  const auto compiled = compile(curve.keys());
+  const auto compiled = compile(curve.keys(), should_stop);
   if (!compiled) return tl::unexpected(compiled.error());
   const Extrapolated<D>& source = compiled->curve;
   const auto locate = [&](double frame) { return source.track.segment_at(frame); };
 
   CurveKeys<D> result;
   for (const double frame : frames_of(first, last, step)) {
+    if (is_stopped(should_stop, result.keys.size())) return interruption();
     Key<D> key;
     key.frame = frame;
     key.value = curve.value(frame);
@@ -90,6 +91,7 @@ Checked<CurveKeys<D>> bake_keys(const Curve<D>& curve, double first, double last
     result.keys.push_back(key);
   }
   for (std::size_t k = 0; k + 1 < result.keys.size(); ++k) {
+    if (is_stopped(should_stop, k)) return interruption();
     Key<D>& left = result.keys[k];
     Key<D>& right = result.keys[k + 1];
     const double span = right.frame - left.frame;
@@ -102,14 +104,14 @@ Checked<CurveKeys<D>> bake_keys(const Curve<D>& curve, double first, double last
       right.in = tangent_of<D>(curve.left_velocity(right.frame), left.value, arrival, span);
     }
   }
-  const auto made = Curve<D>::make(result);
+  const auto made = Curve<D>::make(result, should_stop);
   if (!made) return tl::unexpected(made.error());
   return result;
 }
 
 template Checked<CurveKeys<1>> bake_keys(const Curve<1>&, double, double, double,
-                                         Interpolation::Kind);
+                                         Interpolation::Kind, const StopRequest&);
 template Checked<CurveKeys<3>> bake_keys(const Curve<3>&, double, double, double,
-                                         Interpolation::Kind);
+                                         Interpolation::Kind, const StopRequest&);
 
 }  // namespace pliant

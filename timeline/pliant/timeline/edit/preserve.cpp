@@ -150,22 +150,24 @@ Checked<CurveKeys<D>> without_loop(const CurveKeys<D>& keys) {
 }
 
 template <int D>
-Checked<Shape<D>> shape_of(const CurveKeys<D>& keys) {
-  const auto compiled = compile(keys);
+Checked<Shape<D>> shape_of(const CurveKeys<D>& keys, const StopRequest& should_stop) {
+  const auto compiled = compile(keys, should_stop);
   if (!compiled) return tl::unexpected(compiled.error());
   return Shape<D>{slopes_in_use(keys), compiled->curve.before.slope, compiled->curve.after.slope};
 }
 
 template <int D>
-Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape, const Slack& slack) {
+Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape, const Slack& slack,
+                            const StopRequest& should_stop) {
   // A tangent that becomes a number may change its smooth neighbours, at least by rounding, and an
   // end that no longer extends its line may change the automatic ones there; each round fixes one
   // or more.
   for (;;) {
-    if (const auto valid = compile(keys); !valid) return tl::unexpected(valid.error());
+    if (const auto valid = compile(keys, should_stop); !valid) return tl::unexpected(valid.error());
     while (keep_slopes(keys, shape, slack)) {
+      if (is_stopped(should_stop)) return interruption();
     }
-    const auto compiled = compile(keys);
+    const auto compiled = compile(keys, should_stop);
     if (!compiled) return tl::unexpected(compiled.error());
     const std::size_t count = keys.keys.size();
     const auto span = [&](std::size_t segment) {
@@ -175,7 +177,7 @@ Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape, const Slac
         keep_line<D>(keys.before, compiled->curve.before.slope, shape.before, span(0), slack);
     const bool after = keep_line<D>(keys.after, compiled->curve.after.slope, shape.after,
                                     span(count > 1 ? count - 2 : 0), slack);
-    if (!before && !after) return Curve<D>::make(std::move(keys));
+    if (!before && !after) return Curve<D>::make(std::move(keys), should_stop);
   }
 }
 
@@ -222,10 +224,12 @@ void write_corrections(CurveKeys<D>& author, Overshoot policy) {
 
 template Checked<CurveKeys<1>> without_loop(const CurveKeys<1>&);
 template Checked<CurveKeys<3>> without_loop(const CurveKeys<3>&);
-template Checked<Shape<1>> shape_of(const CurveKeys<1>&);
-template Checked<Shape<3>> shape_of(const CurveKeys<3>&);
-template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&);
-template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&);
+template Checked<Shape<1>> shape_of(const CurveKeys<1>&, const StopRequest&);
+template Checked<Shape<3>> shape_of(const CurveKeys<3>&, const StopRequest&);
+template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&,
+                                     const StopRequest&);
+template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&,
+                                     const StopRequest&);
 template Slack rounding_of(const CurveKeys<1>&);
 template Slack rounding_of(const CurveKeys<3>&);
 template bool stands_for(const CurveKeys<1>&, const CurveKeys<1>&, const Shape<1>&, const Slack&);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant::timeline {
@@ -47,7 +48,8 @@ template <int D>
 
 /// The shape of keys. Errors: those of `Curve::make`. Requires: no loop with copies.
 template <int D>
-[[nodiscard]] Checked<Shape<D>> shape_of(const CurveKeys<D>& keys);
+[[nodiscard]] Checked<Shape<D>> shape_of(const CurveKeys<D>& keys,
+                                         const StopRequest& should_stop = {});
 
 /// The curve of edited keys, with the given shape: a tangent whose slope would follow its new
 /// neighbours is written as a number, with its length, and so is a linear extrapolation whose slope
@@ -55,7 +57,8 @@ template <int D>
 /// Requires: no loop with copies; `shape` has as many keys.
 template <int D>
 [[nodiscard]] Checked<Curve<D>> preserved(CurveKeys<D> keys, const Shape<D>& shape,
-                                          const Slack& slack = {});
+                                          const Slack& slack = {},
+                                          const StopRequest& should_stop = {});
 
 /// Allowed rounding for keys that are moved as a whole: 64 units in the last place of the largest
 /// value and of the largest frame.
@@ -74,10 +77,12 @@ void write_corrections(CurveKeys<D>& keys, Overshoot policy);
 
 extern template Checked<CurveKeys<1>> without_loop(const CurveKeys<1>&);
 extern template Checked<CurveKeys<3>> without_loop(const CurveKeys<3>&);
-extern template Checked<Shape<1>> shape_of(const CurveKeys<1>&);
-extern template Checked<Shape<3>> shape_of(const CurveKeys<3>&);
-extern template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&);
-extern template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&);
+extern template Checked<Shape<1>> shape_of(const CurveKeys<1>&, const StopRequest&);
+extern template Checked<Shape<3>> shape_of(const CurveKeys<3>&, const StopRequest&);
+extern template Checked<Curve<1>> preserved(CurveKeys<1>, const Shape<1>&, const Slack&,
+                                            const StopRequest&);
+extern template Checked<Curve<3>> preserved(CurveKeys<3>, const Shape<3>&, const Slack&,
+                                            const StopRequest&);
 extern template Slack rounding_of(const CurveKeys<1>&);
 extern template Slack rounding_of(const CurveKeys<3>&);
 extern template bool stands_for(const CurveKeys<1>&, const CurveKeys<1>&, const Shape<1>&,

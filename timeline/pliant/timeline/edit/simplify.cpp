@@ -21,6 +21,8 @@ namespace timeline {
 
 namespace {
 
+constexpr std::size_t parts_of_segment = 512;
+
 /// A cubic in time that replaces the segments between two keys.
 template <int D>
 struct Fit {
@@ -33,7 +35,8 @@ struct Fit {
 template <int D>
 class Fitter {
  public:
-  Fitter(const Track<D>& track, double max_error) : track_(track), max_error_(max_error) {}
+  Fitter(const Track<D>& track, double max_error, StopPoll& poll)
+      : track_(track), max_error_(max_error), poll_(poll) {}
 
   /// The longest row of two or more segments from a key to at most `last` that one cubic can
   /// replace; found by doubling, then by bisection.
@@ -90,6 +93,7 @@ class Fitter {
       }
     }
     for (std::size_t k = start; k < end; ++k) {
+      if (poll_.after(parts_of_segment)) return std::nullopt;
       const Handles<D> handles = handles_of(track_, k);
       const Bernstein share = share_of_time(handles, k, start, end);
       for (int c = 0; c < D; ++c) {
@@ -131,6 +135,7 @@ class Fitter {
 
   const Track<D>& track_;
   double max_error_;
+  StopPoll& poll_;
 };
 
 std::optional<Complaint> fault_of(double first, double last, double max_error) {
@@ -146,8 +151,9 @@ std::optional<Complaint> fault_of(double first, double last, double max_error) {
 template <int D>
 Checked<Simplified<D>> simplified(const CurveKeys<D>& keys, const Shape<D>& shape,
                                   const Track<D>& track, std::size_t from, std::size_t to,
-                                  double max_error) {
-  const Fitter<D> fitter(track, max_error);
+                                  double max_error, const StopRequest& should_stop) {
+  StopPoll poll(should_stop);
+  const Fitter<D> fitter(track, max_error, poll);
   Simplified<D> result;
   CurveKeys<D> fewer = keys;
   fewer.keys.clear();
@@ -160,6 +166,7 @@ Checked<Simplified<D>> simplified(const CurveKeys<D>& keys, const Shape<D>& shap
   for (std::size_t k = 0; k <= from; ++k) take(k);
   for (std::size_t k = from; k < to;) {
     const auto fit = fitter.longest(k, to);
+    if (poll.after(parts_of_segment)) return interruption();
     if (!fit) {
       take(++k);
       continue;
@@ -176,7 +183,7 @@ Checked<Simplified<D>> simplified(const CurveKeys<D>& keys, const Shape<D>& shap
     k = fit->end;
   }
   for (std::size_t k = to + 1; k < keys.keys.size(); ++k) take(k);
-  const auto curve = preserved(std::move(fewer), shape_of_fewer, rounding_of(keys));
+  const auto curve = preserved(std::move(fewer), shape_of_fewer, rounding_of(keys), should_stop);
   if (!curve) return tl::unexpected(curve.error());
   result.keys = curve->keys();
   return result;
@@ -187,25 +194,27 @@ Checked<Simplified<D>> simplified(const CurveKeys<D>& keys, const Shape<D>& shap
 }  // namespace timeline
 
 template <int D>
-Checked<Simplified<D>> simplify(const Curve<D>& curve, double first, double last,
-                                double max_error) {
+Checked<Simplified<D>> simplify(const Curve<D>& curve, double first, double last, double max_error,
+                                const StopRequest& should_stop) {
   using namespace timeline;
   if (const auto error = fault_of(first, last, max_error)) return tl::unexpected(*error);
   const auto keys = without_loop(curve.keys());
   if (!keys) return tl::unexpected(keys.error());
-  const auto compiled = compile(*keys);
+  const auto compiled = compile(*keys, should_stop);
   if (!compiled) return tl::unexpected(compiled.error());
   const std::vector<double>& frames = compiled->curve.track.frames;
   const auto from = std::lower_bound(frames.begin(), frames.end(), first) - frames.begin();
   const auto beyond = std::upper_bound(frames.begin(), frames.end(), last) - frames.begin();
   if (max_error == 0 || beyond - from < 3) return Simplified<D>{curve.keys(), 0};
-  const auto shape = shape_of(*keys);
+  const auto shape = shape_of(*keys, should_stop);
   if (!shape) return tl::unexpected(shape.error());
   return simplified(*keys, *shape, compiled->curve.track, static_cast<std::size_t>(from),
-                    static_cast<std::size_t>(beyond - 1), max_error);
+                    static_cast<std::size_t>(beyond - 1), max_error, should_stop);
 }
 
-template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double);
-template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double);
+template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double,
+                                         const StopRequest&);
+template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double,
+                                         const StopRequest&);
 
 }  // namespace pliant

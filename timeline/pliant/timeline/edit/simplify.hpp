@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pliant/core/result.hpp"
+#include "pliant/core/stop_request.hpp"
 #include "pliant/timeline/curve.hpp"
 
 namespace pliant {
@@ -19,12 +20,16 @@ struct Simplified {
 /// polynomial of the segment's parameter, bounded by its Bernstein coefficients to a thousandth,
 /// apart from rounding of the values. If max_error is 0, the keys stay the same. An inner loop with
 /// copies is written out. Errors: a frame that is not finite; last < first; max_error not finite or
-/// negative. Cost: O(keys · log keys) polynomials.
+/// negative. If it is stopped, an error that is an interruption. Cost: O(keys · log keys)
+/// polynomials.
 template <int D>
 [[nodiscard]] Checked<Simplified<D>> simplify(const Curve<D>& curve, double first, double last,
-                                              double max_error);
+                                              double max_error,
+                                              const StopRequest& should_stop = {});
 
-extern template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double);
-extern template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double);
+extern template Checked<Simplified<1>> simplify(const Curve<1>&, double, double, double,
+                                                const StopRequest&);
+extern template Checked<Simplified<3>> simplify(const Curve<3>&, double, double, double,
+                                                const StopRequest&);
 
 }  // namespace pliant
