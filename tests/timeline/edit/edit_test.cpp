@@ -234,6 +234,32 @@ TEST_CASE("scaling the keys scales the curve", "[timeline][edit]") {
       [](double v) { return 0.25 + -2.3 * (v - 0.25); });
 }
 
+TEST_CASE("scaled keys are those of the scaled curve", "[timeline][edit]") {
+  Whim whim(10);
+  int same = 0;
+  for (int round = 0; round < rounds(2000); ++round) {
+    const Curve<1> curve = some_curve(whim, 6);
+    const Scaling<1> scaling{1.5, 1.7, {0.25}, {-2.3}};
+    const CurveKeys<1> keys = scaled_keys(curve.keys(), scaling);
+    const Curve<1> scaled = scale(curve, scaling).value();
+    if (scaled.keys() == keys) ++same;
+    // Where rounding decides about an automatic slope, the scaled curve has it as a number.
+    if (scaled.keys().keys.size() != keys.keys.size()) continue;
+    for (std::size_t k = 0; k < keys.keys.size(); ++k) {
+      Key<1> one = scaled.keys().keys[k], other = keys.keys[k];
+      for (Key<1>* key : {&one, &other}) key->in = key->out = {};
+      REQUIRE(one == other);
+    }
+  }
+  CHECK(same > rounds(1900));
+  for (int round = 0; round < rounds(1000); ++round) {
+    const Curve<1> curve = some_curve(whim, 6);
+    const CurveKeys<1> flat = scaled_keys(curve.keys(), {0, 1, {3}, {0}});
+    for (int i = 0; i < 10; ++i) REQUIRE(at(make(flat), some_frame(whim, curve)) == 3);
+    CHECK(scaled_keys(curve.keys(), {7, 1, {3}, {1}}) == curve.keys());
+  }
+}
+
 TEST_CASE("a reversed curve is the curve run backwards", "[timeline][edit]") {
   check_equivariance(
       5, true, 1, [](const Curve<1>& curve) { return reverse(curve, 2.1); },

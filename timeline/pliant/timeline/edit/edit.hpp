@@ -76,6 +76,12 @@ struct Scaling {
 template <int D>
 [[nodiscard]] Checked<Curve<D>> scale(const Curve<D>& curve, const Scaling<D>& scaling);
 
+/// Keys with the frames, values, slopes, lengths and parameters of that: kinds of tangents stay,
+/// and with them all but rounding. Factors of 0 make a constant. Requires: time_factor > 0; of an
+/// elastic with an amplitude, value factors of the same size.
+template <int D>
+[[nodiscard]] CurveKeys<D> scaled_keys(CurveKeys<D> keys, const Scaling<D>& scaling);
+
 /// The curve run backwards: g(t) = f(2·pivot - t), with the values on both sides of a jump
 /// exchanged. On the frame of a jump a curve has its new value, so at that frame alone g has the
 /// limit of f from the left. Errors: a pivot that is not finite; a side that repeats for a number
@@ -106,6 +112,8 @@ extern template Checked<Curve<1>> move_keys(const Curve<1>&, double, const Value
 extern template Checked<Curve<3>> move_keys(const Curve<3>&, double, const Value<3>&);
 extern template Checked<Curve<1>> scale(const Curve<1>&, const Scaling<1>&);
 extern template Checked<Curve<3>> scale(const Curve<3>&, const Scaling<3>&);
+extern template CurveKeys<1> scaled_keys(CurveKeys<1>, const Scaling<1>&);
+extern template CurveKeys<3> scaled_keys(CurveKeys<3>, const Scaling<3>&);
 extern template Checked<Curve<1>> reverse(const Curve<1>&, double);
 extern template Checked<Curve<3>> reverse(const Curve<3>&, double);
 extern template Checked<Curve<1>> splice(const Curve<1>&, double, double, const Curve<1>&);

@@ -30,15 +30,31 @@ struct Mapping {
   }
   Value<D> rise_of(const Value<D>& rise) const {
     Value<D> result;
-    for (int c = 0; c < D; ++c) result[c] = rise[c] * value_factor[c];
+    for (int c = 0; c < D; ++c) result[c] = rise[c] * value_factor[c] + 0.0;  // no -0
     return result;
   }
   Value<D> slope_of(const Value<D>& slope) const {
     Value<D> result;
-    for (int c = 0; c < D; ++c) result[c] = slope[c] * value_factor[c] / time_factor;
+    for (int c = 0; c < D; ++c) result[c] = slope[c] * value_factor[c] / time_factor + 0.0;
     return result;
   }
 };
+
+template <int D>
+Mapping<D> mapping_of(const Scaling<D>& scaling) {
+  Mapping<D> map;
+  map.frame = [scaling](double frame) {
+    if (scaling.time_factor == 1) return frame;
+    return scaling.frame + scaling.time_factor * (frame - scaling.frame);
+  };
+  map.value = [scaling](double value, int c) {
+    if (scaling.value_factor[c] == 1) return value;
+    return scaling.value[c] + scaling.value_factor[c] * (value - scaling.value[c]);
+  };
+  map.time_factor = scaling.time_factor;
+  map.value_factor = scaling.value_factor;
+  return map;
+}
 
 template <int D>
 Tangent<D> mapped(Tangent<D> tangent, const Mapping<D>& map) {
@@ -176,23 +192,19 @@ Checked<Curve<D>> scale(const Curve<D>& curve, const Scaling<D>& scaling) {
     forwards.time_factor = -scaling.time_factor;
     return scale(*reversed, forwards);
   }
-  timeline::Mapping<D> map;
-  map.frame = [&](double frame) {
-    if (scaling.time_factor == 1) return frame;
-    return scaling.frame + scaling.time_factor * (frame - scaling.frame);
-  };
-  map.value = [&](double value, int c) {
-    if (scaling.value_factor[c] == 1) return value;
-    return scaling.value[c] + scaling.value_factor[c] * (value - scaling.value[c]);
-  };
-  map.time_factor = scaling.time_factor;
-  map.value_factor = scaling.value_factor;
-  return mapped(curve, map);
+  return mapped(curve, timeline::mapping_of(scaling));
+}
+
+template <int D>
+CurveKeys<D> scaled_keys(CurveKeys<D> keys, const Scaling<D>& scaling) {
+  return timeline::mapped(std::move(keys), timeline::mapping_of(scaling));
 }
 
 template Checked<Curve<1>> move_keys(const Curve<1>&, double, const Value<1>&);
 template Checked<Curve<3>> move_keys(const Curve<3>&, double, const Value<3>&);
 template Checked<Curve<1>> scale(const Curve<1>&, const Scaling<1>&);
 template Checked<Curve<3>> scale(const Curve<3>&, const Scaling<3>&);
+template CurveKeys<1> scaled_keys(CurveKeys<1>, const Scaling<1>&);
+template CurveKeys<3> scaled_keys(CurveKeys<3>, const Scaling<3>&);
 
 }  // namespace pliant
