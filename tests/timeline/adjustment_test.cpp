@@ -28,6 +28,8 @@ TEST_CASE("an adjusted curve has the curve's values, adjusted by one rounding",
     REQUIRE(curve.adjustments() != nullptr);
     CHECK(*curve.adjustments() == Adjustments<1>{one});
     CHECK(plain.adjustments() == nullptr);
+    CHECK(curve.unadjusted() == plain);
+    CHECK(plain.unadjusted() == plain);
     const double from = plain.keys().keys.front().frame - 10;
     const double to = plain.keys().keys.back().frame + 10;
     const auto range = curve.range(from, to);

@@ -46,6 +46,7 @@ struct Curve<D>::Shared {
   CurveKeys<D> keys;
   timeline::Compiled<D> compiled;
   std::optional<Adjustments<D>> adjustments = {};
+  std::shared_ptr<const Shared> unadjusted = {};  // null: this one
 };
 
 template <int D>
@@ -57,6 +58,9 @@ Checked<Curve<D>> Curve<D>::make(CurveKeys<D> keys, const StopRequest& should_st
 
 template <int D>
 Curve<D>::Curve(Shared shared) : shared_(std::make_shared<const Shared>(std::move(shared))) {}
+
+template <int D>
+Curve<D>::Curve(std::shared_ptr<const Shared> shared) : shared_(std::move(shared)) {}
 
 template <int D>
 Curve<D>::Curve(const Curve&) = default;
@@ -82,6 +86,7 @@ Curve<D> Curve<D>::adjusted(const Adjustments<D>& adjustments) const {
     handle.key_value = adjusted_value<D>(adjustments, handle.key_value);
     handle.value = adjusted_value<D>(adjustments, handle.value);
   }
+  if (!shared.unadjusted) shared.unadjusted = shared_;
   shared.adjustments = shared.adjustments ? both<D>(*shared.adjustments, adjustments) : adjustments;
   return Curve(std::move(shared));
 }
@@ -89,6 +94,11 @@ Curve<D> Curve<D>::adjusted(const Adjustments<D>& adjustments) const {
 template <int D>
 const Adjustments<D>* Curve<D>::adjustments() const {
   return shared_->adjustments ? &*shared_->adjustments : nullptr;
+}
+
+template <int D>
+Curve<D> Curve<D>::unadjusted() const {
+  return shared_->unadjusted ? Curve(shared_->unadjusted) : *this;
 }
 
 template <int D>

@@ -70,12 +70,15 @@ class Curve {
   /// What it is adjusted by; null: it is not.
   const Adjustments<D>* adjustments() const;
 
+  /// The curve that was adjusted; itself if none was.
+  Curve unadjusted() const;
+
   /// Of an adjusted curve, its keys with values, slopes and handles adjusted, for drawing it.
   const CurveKeys<D>& keys() const;
   const std::vector<CurveNote>& notes() const;
 
-  /// The handles of the Bézier segments, including those of a loop's copies, in the order of
-  /// frames: for drawing the curve as its author sees it.
+  /// The handles of the Bézier segments, `out` and `in` of each, with those of a loop's copies, in
+  /// the order of frames: for drawing the curve as its author sees it.
   const std::vector<KeyHandle<D>>& handles() const;
 
   /// The same keys and adjustments. Requires: neither is moved from.
@@ -89,6 +92,7 @@ class Curve {
   const timeline::Extrapolated<D>& compiled() const;
 
   explicit Curve(Shared shared);
+  explicit Curve(std::shared_ptr<const Shared> shared);
   bool is_equal(const Curve& other) const;
 
   std::shared_ptr<const Shared> shared_;  // of all copies; null once moved from
