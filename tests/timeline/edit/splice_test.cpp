@@ -14,46 +14,6 @@
 namespace pliant::testing {
 namespace {
 
-/// Keys as those of `Whim`, of vectors.
-CurveKeys<3> vector_keys(Whim& whim, int most) {
-  const CurveKeys<1> numbers = whim.keys(most);
-  const auto widened = [&](const Value<1>& value) {
-    return Value<3>{value[0], whim.between(-5, 5), whim.once_in(2) ? value[0] : 0};
-  };
-  const auto tangent = [&](const Tangent<1>& of) {
-    return Tangent<3>{.kind = static_cast<Tangent<3>::Kind>(of.kind),
-                      .slope = widened(of.slope),
-                      .length = of.length,
-                      .handle_frames = of.handle_frames,
-                      .handle_value = widened(of.handle_value)};
-  };
-  const auto outside = [&](const Extrapolation<1>& of) {
-    return Extrapolation<3>{.kind = static_cast<Extrapolation<3>::Kind>(of.kind),
-                            .slope = widened(of.slope),
-                            .count = of.count};
-  };
-  CurveKeys<3> keys{.keys = {},
-                    .before = outside(numbers.before),
-                    .after = outside(numbers.after),
-                    .overshoot = numbers.overshoot};
-  for (const Key<1>& key : numbers.keys)
-    keys.keys.push_back({.frame = key.frame,
-                         .value = widened(key.value),
-                         .next = key.next,
-                         .in = tangent(key.in),
-                         .out = tangent(key.out),
-                         .left = key.left ? std::optional(widened(*key.left)) : std::nullopt});
-  return keys;
-}
-
-template <int D>
-CurveKeys<D> random_keys(Whim& whim, int most) {
-  if constexpr (D == 1)
-    return whim.keys(most);
-  else
-    return vector_keys(whim, most);
-}
-
 template <int D>
 Curve<D> random_curve(Whim& whim, int most) {
   return Curve<D>::make(random_keys<D>(whim, most)).value();
