@@ -3,6 +3,18 @@
 #include <cstdint>
 
 namespace pliant {
+namespace {
+
+constexpr std::uint32_t no_digit = 64;
+
+std::uint32_t digit_of(char c) {
+  if (c >= 'A' && c <= 'Z') return static_cast<std::uint32_t>(c - 'A');
+  if (c >= 'a' && c <= 'z') return static_cast<std::uint32_t>(c - 'a') + 26;
+  if (c >= '0' && c <= '9') return static_cast<std::uint32_t>(c - '0') + 52;
+  return c == '+' ? 62 : c == '/' ? 63 : no_digit;
+}
+
+}  // namespace
 
 std::string base64(std::string_view bytes) {
   constexpr std::string_view digits =
@@ -20,6 +32,31 @@ std::string base64(std::string_view bytes) {
     }
   }
   return text;
+}
+
+std::optional<std::string> from_base64(std::string_view text, StopPoll& poll) {
+  if (text.size() % 4 != 0) return std::nullopt;
+  const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
+  std::string bytes;
+  bytes.reserve(text.size() / 4 * 3);
+  for (std::size_t at = 0; at < text.size(); at += 4) {
+    const std::size_t digits = at + 4 == text.size() ? 4 - padding : 4;
+    if (poll.after(4)) return std::nullopt;
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const std::uint32_t digit = k < digits ? digit_of(text[at + k]) : 0;
+      if (digit == no_digit) return std::nullopt;
+      bits = bits << 6 | digit;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto byte = static_cast<char>(bits >> (16 - 8 * k) & 0xff);
+      if (k + 1 < digits)
+        bytes += byte;
+      else if (byte != 0)
+        return std::nullopt;
+    }
+  }
+  return bytes;
 }
 
 }  // namespace pliant
