@@ -143,19 +143,35 @@ double elastic_out(double time, double begin, double change, double duration, do
 }
 
 TEST_CASE("an elastic that falls by less than its amplitude is Blender's", "[exchange][blender]") {
+  const double fall = GENERATE(5, 0.25, 0);
   const auto file = read_fcurves(document(
       point(2, 9,
             R"("interpolation": "ELASTIC", "easing": "EASE_OUT", "amplitude": 7, "period": 5)") +
-      "," + point(26, 4, "\"left\": [20, 4]")));
+      "," + point(26, 9 - fall, "\"left\": [20, 4]")));
   REQUIRE(file.has_value());
   REQUIRE(file->losses.size() == 1);
   CHECK_THAT(file->losses[0].message, contains_text("1 elastic easing of Blender"));
   const Curve<1> curve = make(file->curves[0].keys);
   for (int k = 0; k <= 240; ++k) {
     const double time = k / 10.0;
-    const double exact = k == 0 ? 9 : k == 240 ? 4 : elastic_out(time, 9, -5, 24, 7, 5);
+    const double exact = k == 0 ? 9 : k == 240 ? 9 - fall : elastic_out(time, 9, -fall, 24, 7, 5);
     CHECK(std::fabs(curve.value(2 + time)[0] - exact) <= 1e-4 * 12);
   }
+}
+
+TEST_CASE("an elastic between equal values swings in Blender alone", "[exchange][blender]") {
+  Key<1> first{.frame = 2, .value = {9}};
+  first.next = {.kind = Interpolation::Kind::Easing, .ease = Ease::Elastic, .amplitude = 7};
+  const Curve<1> level = Curve<1>::make({.keys = {first, {.frame = 26, .value = {9}}}}).value();
+  const auto written =
+      write_curves({{"poke.magnitude", level}}, CurveFormat::Blender, {.last = 26});
+  REQUIRE(written.has_value());
+  CHECK(written->losses.empty());
+  const auto back = read_fcurves(written->bytes);
+  REQUIRE(back.has_value());
+  CHECK(back->losses.empty());
+  const Curve<1> curve = make(back->curves[0].keys);
+  for (int frame = 2; frame <= 26; ++frame) CHECK(curve.value(frame)[0] == 9);
 }
 
 TEST_CASE("angles of Blender are radians", "[exchange][blender]") {

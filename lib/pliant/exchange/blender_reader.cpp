@@ -521,7 +521,7 @@ class BlenderReader : private JsonReader {
 }  // namespace
 
 bool has_blender_easing(const Interpolation& easing, double change) {
-  return easing.ease != Ease::Elastic || change >= 0 || !easing.amplitude ||
+  return easing.ease != Ease::Elastic || change > 0 || !easing.amplitude ||
          !(*easing.amplitude > -change);
 }
 

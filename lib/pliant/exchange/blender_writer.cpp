@@ -17,7 +17,8 @@ Abilities blender_abilities() {
           .has_counted_copies = true,
           .has_easing =
               [](const Segment& segment) {
-                return has_blender_easing(segment.easing, segment.to - segment.from);
+                return segment.from == segment.to ||
+                       has_blender_easing(segment.easing, segment.to - segment.from);
               },
           .has_bold_arms = false};
 }
@@ -97,8 +98,10 @@ class FCurveText {
       if (easing.ease == Ease::Back)
         fmt::format_to(out, ", \"back\": {}", easing.back.value_or(1.70158));
       if (easing.ease == Ease::Elastic) {
+        // An amplitude of 0 is the change: between equal values Blender would swing by any other.
+        const double change = std::fabs(segment->to - segment->from);
         fmt::format_to(out, ", \"amplitude\": {}, \"period\": {}",
-                       factor_ * easing.amplitude.value_or(std::fabs(segment->to - segment->from)),
+                       change == 0 ? 0 : factor_ * easing.amplitude.value_or(change),
                        easing.period.value_or(0));
       }
       return;

@@ -18,7 +18,7 @@ Result<CurveText> write_blender(const std::vector<ChannelCurve>& curves,
                                 const CurveWriting& writing);
 
 /// Whether Blender's easing has the shape of pliant's. It turns the phase of an elastic round that
-/// falls by less than its amplitude.
+/// falls by less than its amplitude, and one between equal values swings there alone.
 bool has_blender_easing(const Interpolation& easing, double change);
 
 // Maya's .anim, the text of its plug-in animImportExport, version 1.1. Its layout and the meaning
