@@ -15,44 +15,6 @@
 namespace pliant::cli {
 namespace {
 
-std::string_view word_of(Obstacle obstacle) {
-  switch (obstacle) {
-    case Obstacle::NothingMoves:
-      return "nothingMoves";
-    case Obstacle::LeavesReach:
-      return "leavesReach";
-    case Obstacle::MovesAnyway:
-      return "movesAnyway";
-    case Obstacle::StepsDamp:
-      return "stepsDamp";
-    case Obstacle::StepsTooLong:
-      return "stepsTooLong";
-    case Obstacle::Overdamped:
-      return "overdamped";
-    case Obstacle::TooSoon:
-      return "tooSoon";
-    case Obstacle::BetweenSwings:
-      return "betweenSwings";
-    case Obstacle::FrameRate:
-      return "frameRate";
-    case Obstacle::NoInertia:
-      return "noInertia";
-    case Obstacle::NoDamping:
-      return "noDamping";
-    case Obstacle::NotHeld:
-      return "notHeld";
-    case Obstacle::TooLarge:
-      return "tooLarge";
-    case Obstacle::NoCycle:
-      return "noCycle";
-    case Obstacle::NotFound:
-      return "notFound";
-    case Obstacle::None:
-      break;
-  }
-  return "none";
-}
-
 // Numbers that are not finite become null.
 Json goal_json(const std::optional<GoalResult>& goal) {
   if (!goal) return nullptr;
@@ -60,7 +22,7 @@ Json goal_json(const std::optional<GoalResult>& goal) {
   return {{"wanted", goal->wanted},
           {"found", goal->is_known ? Json(goal->found) : Json(nullptr)},
           {"miss", goal->miss()},
-          {"obstacle", is_told ? Json(word_of(goal->obstacle)) : Json(nullptr)},
+          {"obstacle", is_told ? Json(name_of(goal->obstacle)) : Json(nullptr)},
           {"reason", is_told ? Json(goal->reason) : Json(nullptr)}};
 }
 

@@ -1,4 +1,6 @@
+#include <set>
 #include <string>
+#include <string_view>
 
 #include "support/catch.hpp"
 #include "support/scenes.hpp"
@@ -243,4 +245,14 @@ TEST_CASE("a group's region is called a group", "[feedback][warnings][group]") {
   s.forces[0].group.clear();
   s.forces[0].kind = PointChannels{.center = Value<3>{0, 50, 0}};
   CHECK_THAT(warnings_of(s, 5)[0].message(), Contains("force \"palm\" selects no node"));
+}
+
+TEST_CASE("each kind of a warning has a word of its own", "[feedback][warnings]") {
+  const int count = static_cast<int>(Warning::Kind::PassesBetween) + 1;
+  std::set<std::string_view> words;
+  for (int k = 0; k < count; ++k) words.insert(word_of(static_cast<Warning::Kind>(k)));
+  CHECK(words.size() == static_cast<std::size_t>(count));
+  CHECK_FALSE(words.contains(""));
+  CHECK(word_of(Warning::Kind::RegionTooSmall) == "regionTooSmall");
+  CHECK(word_of(Warning::Kind::PassesBetween) == "passesBetween");
 }

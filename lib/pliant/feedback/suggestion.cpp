@@ -523,6 +523,44 @@ class Suggester {
 
 }  // namespace
 
+std::string_view name_of(Obstacle obstacle) {
+  switch (obstacle) {
+    case Obstacle::NothingMoves:
+      return "nothingMoves";
+    case Obstacle::LeavesReach:
+      return "leavesReach";
+    case Obstacle::MovesAnyway:
+      return "movesAnyway";
+    case Obstacle::StepsDamp:
+      return "stepsDamp";
+    case Obstacle::StepsTooLong:
+      return "stepsTooLong";
+    case Obstacle::Overdamped:
+      return "overdamped";
+    case Obstacle::TooSoon:
+      return "tooSoon";
+    case Obstacle::BetweenSwings:
+      return "betweenSwings";
+    case Obstacle::FrameRate:
+      return "frameRate";
+    case Obstacle::NoInertia:
+      return "noInertia";
+    case Obstacle::NoDamping:
+      return "noDamping";
+    case Obstacle::NotHeld:
+      return "notHeld";
+    case Obstacle::TooLarge:
+      return "tooLarge";
+    case Obstacle::NoCycle:
+      return "noCycle";
+    case Obstacle::NotFound:
+      return "notFound";
+    case Obstacle::None:
+      break;
+  }
+  return "none";
+}
+
 double GoalResult::miss() const {
   return is_known ? std::abs(found / wanted - 1) : std::numeric_limits<double>::infinity();
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/core/result.hpp"
@@ -47,6 +48,9 @@ enum class Obstacle {
   NoCycle,        ///< the motion of a loop closes to no cycle
   NotFound,       ///< the animation was played too often without an end
 };
+
+/// Its name in JSON, such as "leavesReach"; "none".
+std::string_view name_of(Obstacle obstacle);
 
 /// A goal beside what the changed scene does.
 struct GoalResult {

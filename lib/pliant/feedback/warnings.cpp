@@ -192,6 +192,67 @@ std::string Warning::own_message() const {
   return {};
 }
 
+std::string_view word_of(Warning::Kind kind) {
+  using Kind = Warning::Kind;
+  switch (kind) {
+    case Kind::RegionTooSmall:
+      return "regionTooSmall";
+    case Kind::LostNodes:
+      return "lostNodes";
+    case Kind::OutsideRegion:
+      return "outsideRegion";
+    case Kind::SelectsNothing:
+      return "selectsNothing";
+    case Kind::PushesNothing:
+      return "pushesNothing";
+    case Kind::NeverStarts:
+      return "neverStarts";
+    case Kind::TangentsUnused:
+      return "tangentsUnused";
+    case Kind::ForcesApart:
+      return "forcesApart";
+    case Kind::AllHeld:
+      return "allHeld";
+    case Kind::BetweenNodes:
+      return "betweenNodes";
+    case Kind::LoosePatch:
+      return "loosePatch";
+    case Kind::FacesLeftOut:
+      return "facesLeftOut";
+    case Kind::CacheOutside:
+      return "cacheOutside";
+    case Kind::FileLeftOut:
+      return "fileLeftOut";
+    case Kind::NothingMoved:
+      return "nothingMoved";
+    case Kind::KeysOutside:
+      return "keysOutside";
+    case Kind::Drifts:
+      return "drifts";
+    case Kind::FliesAway:
+      return "fliesAway";
+    case Kind::FrozenMoving:
+      return "frozenMoving";
+    case Kind::RadiusExceeds:
+      return "radiusExceeds";
+    case Kind::RadiusUnused:
+      return "radiusUnused";
+    case Kind::NeverMoves:
+      return "neverMoves";
+    case Kind::MapOutside:
+      return "mapOutside";
+    case Kind::BeginsInside:
+      return "beginsInside";
+    case Kind::HeldInside:
+      return "heldInside";
+    case Kind::Squeezed:
+      return "squeezed";
+    case Kind::PassesBetween:
+      return "passesBetween";
+  }
+  return {};
+}
+
 ScenePlace place_of(const Warning& warning, const SceneOrigin& origin) {
   return origin.place_of(text_place_of(warning, origin));
 }

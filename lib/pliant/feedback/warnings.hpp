@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pliant/body/state.hpp"
@@ -69,6 +70,9 @@ struct Warning {
  private:
   std::string own_message() const;  // without what `is_still` adds
 };
+
+/// The word of a kind, for programs: its name, such as `regionTooSmall`.
+std::string_view word_of(Warning::Kind kind);
 
 /// The warnings about a scene that need no shape: keys, radii, inertia. Requires: `check_channels`
 /// accepts the scene. Cost: a sample of each channel concerned at each frame.
