@@ -5,10 +5,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -134,20 +138,35 @@ std::vector<std::string> all_arguments(const std::vector<std::string>& arguments
   return all;
 }
 
+// Shared libraries that come with the file that this code is in, as in the Python wheel, are for
+// the program too: its whole environment, empty if there are none. Not if the file's name is
+// relative: what is in the present folder is not ours.
+std::string library_path() {
+  Dl_info info;
+  if (dladdr(reinterpret_cast<const void*>(&run_boxed), &info) == 0) return {};
+  const std::string folder = std::filesystem::path(info.dli_fname).parent_path() / "libs";
+  std::error_code error;
+  if (folder.front() != '/' || folder.find_first_of(":;") != std::string::npos ||
+      !std::filesystem::is_directory(folder, error))
+    return {};
+  return "LD_LIBRARY_PATH=" + folder;
+}
+
 Result<pid_t> spawn(const OpenDescriptor& program, const std::vector<std::string>& arguments,
                     int input, const OpenDescriptor& answer) {
   std::vector<std::string> owned = arguments;
   std::vector<char*> pointers;
   for (std::string& argument : owned) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  char* no_environment[] = {nullptr};
+  std::string path_of_libraries = library_path();
+  char* environment[] = {path_of_libraries.empty() ? nullptr : path_of_libraries.data(), nullptr};
   SpawnSettings settings;
   int error = settings.set(program.number(), input, answer.number());
   const std::string path = fmt::format("/proc/self/fd/{}", boxed_program);
   pid_t process = -1;
   if (error == 0) {
     error = posix_spawn(&process, path.c_str(), &settings.actions, &settings.attributes,
-                        pointers.data(), no_environment);
+                        pointers.data(), environment);
   }
   if (error != 0) return not_started("posix_spawn", error);
   return process;
