@@ -202,6 +202,7 @@ TEST_CASE("the format as JSON has what programs need of each row", "[scene][form
       range.excludes_zero = row.value("excludesZero", false);
       CHECK(range.to_text() == of.limits.to_text());
       CHECK(row.value("position", false) == of.is_position);
+      CHECK(row.value("surfaces", false) == of.names_surfaces);
       // An <animate> names a channel of what it stands in.
       const bool is_of_words = (of.type == "word" && of.name != "attribute") ||
                                of.type == "one or four words" || of.type == "tangent" ||

@@ -62,6 +62,7 @@ enum class Syntax {
   Rate,      ///< a number, or a fraction of two
   Version,   ///< of the format: 1
   Position,  ///< the name of a position of the element around it
+  Surface,   ///< the name of a surface, or of some
 };
 
 /// A row: one attribute of a thing.

@@ -29,9 +29,10 @@ struct Description<Collider> {
     row(Attribute{.name = "enabled",
                   .meaning = "a disabled collider selects nothing and stops nothing"},
         of.enabled...);
-    row(
-        Attribute{
-            .name = "targets", .meaning = "the surfaces that meet it", .absent = "all surfaces"},
+    row(Attribute{.name = "targets",
+                  .meaning = "the surfaces that meet it",
+                  .absent = "all surfaces",
+                  .syntax = Syntax::Surface},
         of.targets...);
     row(deformation_radius_attribute, of.deformation_radius...);
     row(Attribute{.name = "offset",

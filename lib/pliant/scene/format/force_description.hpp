@@ -39,14 +39,17 @@ struct MembersOf {
 };
 
 // Rows that forces and groups share.
-inline constexpr Attribute targets_attribute{
-    .name = "targets", .meaning = "the surfaces it acts on", .absent = "all surfaces"};
+inline constexpr Attribute targets_attribute{.name = "targets",
+                                             .meaning = "the surfaces it acts on",
+                                             .absent = "all surfaces",
+                                             .syntax = Syntax::Surface};
 inline constexpr Attribute follow_attribute{
     .name = "follow",
     .meaning =
         "the surface in whose object space its places and directions are; it rides on the "
         "surface's transform, or on its cache",
-    .absent = "the world"};
+    .absent = "the world",
+    .syntax = Syntax::Surface};
 inline constexpr Attribute deformation_radius_attribute{
     .name = "deformationRadius",
     .meaning = "nearer vertices select the region that is solved",

@@ -26,6 +26,7 @@ struct AttributeFormat {
   Need need = Need::Optional;
   bool is_keyable = false;
   bool is_position = false;                      ///< a <path> may move it
+  bool names_surfaces = false;                   ///< one, or some
   Range limits = {};                             ///< of its numbers
   std::span<const std::string_view> words = {};  ///< of a word
 

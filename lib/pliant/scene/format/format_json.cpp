@@ -50,6 +50,7 @@ Json json_of(const AttributeFormat& attribute) {
   if (attribute.need != Need::Required) add(json, "default", attribute.standard);
   if (const auto words = words_in(attribute); !words.empty()) json["words"] = words;
   if (attribute.is_position) json["position"] = true;
+  if (attribute.names_surfaces) json["surfaces"] = true;
   return json;
 }
 

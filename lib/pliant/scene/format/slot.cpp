@@ -363,6 +363,7 @@ AttributeFormat format_of(const Slot& slot) {
           .need = attribute.need,
           .is_keyable = is_channel(slot.place),
           .is_position = std::holds_alternative<PositionChannel*>(slot.place),
+          .names_surfaces = attribute.syntax == Syntax::Surface,
           .limits = attribute.range,
           .words = attribute.words};
 }

@@ -55,7 +55,8 @@ struct Description<Surface> {
     row(Attribute{.name = "drivenBy",
                   .meaning =
                       "the surface that it follows; it has only a shape and a transform then",
-                  .absent = "none: it is solved itself"},
+                  .absent = "none: it is solved itself",
+                  .syntax = Syntax::Surface},
         of.driven_by...);
   }
 
