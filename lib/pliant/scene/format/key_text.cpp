@@ -172,34 +172,12 @@ std::string word_of(const Words& words, E value) {
   return "";
 }
 
-std::string text_of(const Interpolation& interpolation) {
-  if (interpolation.kind != Interpolation::Kind::Easing)
-    return word_of(interpolations, interpolation.kind);
-  return word_of(eases, interpolation.ease) + word_of(sides, interpolation.side);
-}
-
-std::string text_of(const std::array<double, 4>& control) {
+std::string control_text(const std::array<double, 4>& control) {
   return fmt::format("{}", fmt::join(control, " "));
 }
 
 template <int D>
-std::string text_of(const Tangent<D>& tangent, ValueKind kind) {
-  using Kind = typename Tangent<D>::Kind;
-  return tangent.kind == Kind::Slope ? value_text<D>(tangent.slope, kind)
-                                     : word_of(tangents<D>, tangent.kind);
-}
-
-template <int D>
-std::string text_of(const Extrapolation<D>& extrapolation, ValueKind kind) {
-  std::string text = word_of(extrapolations<D>, extrapolation.kind);
-  if (extrapolation.kind == Extrapolation<D>::Kind::Slope)
-    text += ' ' + value_text<D>(extrapolation.slope, kind);
-  if (extrapolation.count) text += fmt::format(" {:.0f}", *extrapolation.count);
-  return text;
-}
-
-template <int D>
-std::string text_of(const Handle<D>& handle, ValueKind kind) {
+std::string handle_text(const Handle<D>& handle, ValueKind kind) {
   return fmt::format("{} {}", handle.frames, value_text<D>(handle.value, kind));
 }
 
@@ -246,7 +224,8 @@ struct KeySlots {
     return written(attribute, place, "extrapolation", "", parse(parse_extrapolation<D>), text());
   }
   Slot slot_of(const Attribute& attribute, std::optional<Handle<D>>& place) const {
-    return written(attribute, place, "handle", "", parse(parse_handle<D>), if_present(text()));
+    return written(attribute, place, "handle", "", parse(parse_handle<D>),
+                   if_present(write(handle_text<D>)));
   }
 
  private:
@@ -324,6 +303,28 @@ std::string value_text(const Value<D>& value, ValueKind kind) {
   return fmt::format("{}", fmt::join(value, " "));
 }
 
+std::string text_of(const Interpolation& interpolation) {
+  if (interpolation.kind != Interpolation::Kind::Easing)
+    return word_of(interpolations, interpolation.kind);
+  return word_of(eases, interpolation.ease) + word_of(sides, interpolation.side);
+}
+
+template <int D>
+std::string text_of(const Tangent<D>& tangent, ValueKind kind) {
+  using Kind = typename Tangent<D>::Kind;
+  return tangent.kind == Kind::Slope ? value_text<D>(tangent.slope, kind)
+                                     : word_of(tangents<D>, tangent.kind);
+}
+
+template <int D>
+std::string text_of(const Extrapolation<D>& extrapolation, ValueKind kind) {
+  std::string text = word_of(extrapolations<D>, extrapolation.kind);
+  if (extrapolation.kind == Extrapolation<D>::Kind::Slope)
+    text += ' ' + value_text<D>(extrapolation.slope, kind);
+  if (extrapolation.count) text += fmt::format(" {:.0f}", *extrapolation.count);
+  return text;
+}
+
 template <int D>
 Table table_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
   constexpr std::string_view inherited = "its animate's";
@@ -373,7 +374,7 @@ Table table_of(KeyText<D>& key, KeyAxis axis, ValueKind kind) {
                .unit = "1",
                .absent = "none"},
               key.control, "four numbers", "x1, x2: 0 to 1", parse_control,
-              if_present([](const std::array<double, 4>& value) { return text_of(value); })),
+              if_present(control_text)),
       of.slot_of({.name = "tangent",
                   .meaning = "both sides; instead of the four below",
                   .unit = slope,
@@ -479,6 +480,10 @@ template Checked<Value<1>> parse_value<1>(std::string_view, ValueKind);
 template Checked<Value<3>> parse_value<3>(std::string_view, ValueKind);
 template std::string value_text<1>(const Value<1>&, ValueKind);
 template std::string value_text<3>(const Value<3>&, ValueKind);
+template std::string text_of(const Tangent<1>&, ValueKind);
+template std::string text_of(const Tangent<3>&, ValueKind);
+template std::string text_of(const Extrapolation<1>&, ValueKind);
+template std::string text_of(const Extrapolation<3>&, ValueKind);
 template Table table_of<1>(KeyText<1>&, KeyAxis, ValueKind);
 template Table table_of<3>(KeyText<3>&, KeyAxis, ValueKind);
 template Table table_of<1>(AnimateText<1>&, KeyAxis, ValueKind);

@@ -6,18 +6,11 @@
 #include <string_view>
 #include <vector>
 
+#include "pliant/scene/format/key_words.hpp"
 #include "pliant/scene/format/slot.hpp"
 #include "pliant/timeline/key.hpp"
 
 namespace pliant::xml {
-
-/// How the values of a channel's keys are written.
-enum class ValueKind {
-  Number,
-  Vector,   ///< three numbers
-  Widened,  ///< three numbers, or one that stands for all three
-  Boolean,  ///< `true` or `false`, kept as 1 and 0
-};
 
 /// The axis along which keys are placed.
 enum class KeyAxis {
