@@ -5,6 +5,8 @@
 #include <utility>
 #include <variant>
 
+#include <sys/stat.h>
+
 #include "pliant/files/open_file.hpp"
 #include "pliant/files/opened_mesh.hpp"
 #include "pliant/files/read_file.hpp"
@@ -124,6 +126,40 @@ std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& sc
   };
   xml::expand(*markup, scene.parent_path(), disk, *sources, findings);
   return files;
+}
+
+bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  // Absolute first: otherwise a relative path that does not exist would not be resolved at all.
+  const auto place = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, ignored), ignored);
+  };
+  return std::filesystem::equivalent(a, b, ignored) || place(a) == place(b);
+}
+
+InputFinder::InputFinder(const Scene& scene, const StopRequest& should_stop)
+    : inputs_(inputs_of(scene, should_stop)) {
+  for (const SceneInput& input : inputs_) {
+    struct stat status = {};
+    if (stat(input.file.c_str(), &status) == 0) {
+      there_.try_emplace({status.st_dev, status.st_ino}, input.file);
+    } else {
+      missing_.emplace(input.file.filename().string(), input.file);
+    }
+  }
+}
+
+// One question for each of a million frames; more only for names that an input has.
+std::optional<std::filesystem::path> InputFinder::find(const std::filesystem::path& output) const {
+  struct stat status = {};
+  if (stat(output.c_str(), &status) == 0) {
+    const auto found = there_.find({status.st_dev, status.st_ino});
+    return found != there_.end() ? std::optional(found->second) : std::nullopt;
+  }
+  const auto [first, last] = missing_.equal_range(output.filename().string());
+  for (auto each = first; each != last; ++each)
+    if (name_one_file(output, each->second)) return each->second;
+  return std::nullopt;
 }
 
 }  // namespace pliant

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "pliant/core/stop_request.hpp"
@@ -35,5 +40,26 @@ std::vector<SceneInput> inputs_of_collider(const Collider& collider, const Scene
 std::vector<std::filesystem::path> text_files_of(const std::filesystem::path& scene,
                                                  const std::filesystem::path& root,
                                                  const StopRequest& should_stop = {});
+
+/// Whether two paths lead to the same file, existing or not.
+bool name_one_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// Finds the files of a scene that an output would overwrite; fast enough for a million outputs.
+class InputFinder {
+ public:
+  explicit InputFinder(const Scene& scene, const StopRequest& should_stop = {});
+
+  const std::vector<SceneInput>& inputs() const { return inputs_; }
+
+  /// The input that `output` is, directly or by a link of either kind; null: it is not an input.
+  std::optional<std::filesystem::path> find(const std::filesystem::path& output) const;
+
+ private:
+  std::vector<SceneInput> inputs_;
+  // By their device and number there, whatever their names are.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::filesystem::path> there_;
+  // Those that are not there, by their file names without folders.
+  std::multimap<std::string, std::filesystem::path> missing_;
+};
 
 }  // namespace pliant
