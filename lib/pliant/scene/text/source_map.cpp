@@ -46,16 +46,21 @@ std::size_t SourceText::units_before(std::size_t at) const {
          utf16_units(text_.substr(block * block_size, at % block_size));
 }
 
-std::pair<int, int> SourceText::position_of(std::size_t at) const {
+int SourceText::line_at(std::size_t at) const {
+  std::call_once(counted_, [this] { count(); });
   const auto next = std::upper_bound(line_starts_.begin(), line_starts_.end(), at);
-  std::size_t begin = *(next - 1);
+  return static_cast<int>(next - line_starts_.begin());
+}
+
+std::pair<int, int> SourceText::position_of(std::size_t at) const {
+  const int line = line_at(at);
+  std::size_t begin = line_starts_[static_cast<std::size_t>(line) - 1];
   if (begin == 0 && text_.starts_with(byte_order_mark)) begin = byte_order_mark.size();
   const std::size_t units = at > begin ? units_before(at) - units_before(begin) : 0;
-  return {static_cast<int>(next - line_starts_.begin()), static_cast<int>(units) + 1};
+  return {line, static_cast<int>(units) + 1};
 }
 
 TextSpan SourceText::span_of(const TextRange& range) const {
-  std::call_once(counted_, [this] { count(); });
   const auto [line, column] = position_of(range.begin);
   const auto [end_line, end_column] = position_of(range.end);
   return {line, column, end_line, end_column};

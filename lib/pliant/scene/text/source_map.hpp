@@ -31,6 +31,7 @@ class SourceText {
 
   /// Columns of the first line are counted behind a byte order mark.
   TextSpan span_of(const TextRange& range) const;
+  int line_at(std::size_t at) const;
 
  private:
   static constexpr std::size_t block_size = 4096;  // bytes
