@@ -1,9 +1,7 @@
 #include "cli/commands/bake.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -28,11 +26,9 @@
 #include "cli/terminal/report.hpp"
 #include "cli/terminal/rounded.hpp"
 #include "cli/terminal/usage.hpp"
-#include "pliant/core/stage_timer.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/pliant.hpp"
-#include "pliant/sampling/drawn_collider.hpp"
-#include "pliant/scene/inputs.hpp"
+#include "pliant/simulation/animation_bake.hpp"
 
 namespace pliant::cli {
 namespace {
@@ -54,37 +50,12 @@ Result<std::vector<std::size_t>> chosen_surfaces(const Simulation& simulation,
                           *options.surface, fmt::join(names, ", ")));
 }
 
-Result<AnimationPlan> make_plan(const Simulation& simulation, const BakeOptions& options,
-                                const FrameSpan& frames, const std::vector<std::size_t>& chosen) {
-  const Scene& scene = simulation.scene();
-  AnimationPlan plan{.file = options.out,
-                     .first_frame = frames.first,
-                     .last_frame = frames.last,
-                     .fps = scene.fps,
-                     .is_placed = !is_world(options),
-                     .resume = options.resume,
-                     .should_stop = &was_interrupted};
-  for (const std::size_t k : chosen) {
-    if (was_interrupted()) return interrupted();
-    const RestShape& shape = simulation.rest_shapes()[k];
-    const Placement first = scene.surfaces[k].transform.placement_at(frames.first);
-    const Transform transform = is_world(options) ? make_transform(first) : Transform();
-    plan.surfaces.push_back({.name = shape.name,
-                             .mesh = &shape.mesh,
-                             .rest = is_world(options) ? to_world(transform, shape.mesh.positions)
-                                                       : shape.mesh.positions,
-                             .is_mirrored = transform.is_mirrored()});
-  }
-  return plan;
-}
-
 // Warns of surfaces so far from the origin that the format tears them.
-void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan,
-                       const std::vector<std::size_t>& chosen) {
-  const Scene& scene = simulation.scene();
+void warn_of_precision(const Scene& scene, const AnimationBake& bake) {
+  const AnimationPlan& plan = bake.plan();
   for (const PrecisionLoss& loss : precision_losses(plan)) {
     const std::string& name = plan.surfaces[loss.surface].name;
-    const Surface& surface = scene.surfaces[chosen[loss.surface]];
+    const Surface& surface = scene.surfaces[bake.surfaces()[loss.surface]];
     const Vector3d there = plan.is_placed
                                ? Vector3d(0, 0, 0)
                                : surface.transform.placement_at(plan.first_frame).translate;
@@ -92,23 +63,6 @@ void warn_of_precision(const Simulation& simulation, const AnimationPlan& plan,
                   precision_text(fmt::format("\"{}\"", name), ending_of(plan.file), loss, there) +
                       (plan.is_placed ? "; with --space world" : ""));
   }
-}
-
-// Checks that no output file is an input of the scene: a bake to head.pc2 also writes head.obj.
-Result<void> check_overwrites(const AnimationPlan& plan, const Scene& scene) {
-  const auto refuse = [&](const std::filesystem::path& input) {
-    return fail(ErrorCode::InvalidInput,
-                fmt::format("-o {}: would overwrite {}, an input of the scene; choose another name",
-                            printable(plan.file), printable(input.string())));
-  };
-  for (const SceneInput& input : inputs_of(scene, &was_interrupted)) {
-    if (is_named_at_the_end(plan, input.file.filename().string())) return refuse(input.file);
-  }
-  const InputFinder inputs(scene);
-  for (const std::string& output : files_of(plan)) {
-    if (const auto input = inputs.find(output)) return refuse(*input);
-  }
-  return {};
 }
 
 // Checks that the file for the regions is not one that the bake reads or writes.
@@ -133,79 +87,39 @@ Result<void> check_regions_file(const BakeOptions& options, const Scene& scene,
   return {};
 }
 
-// The surfaces to write and their writer.
-struct Output {
-  std::vector<std::size_t> surfaces;  // by their index in the scene
-  std::unique_ptr<AnimationWriter> writer;
-  DrawnColliders colliders = {};
-  std::vector<SurfacePose> poses = {};  // of the surfaces, reused to avoid allocations
-  Profile profile = {};                 // of the work in this file
-};
-
-Result<Output> open_output(const Simulation& simulation, const BakeOptions& options,
-                           const FrameSpan& frames, std::size_t max_memory) {
-  const auto chosen = chosen_surfaces(simulation, options);
-  if (!chosen) return fail(chosen.error());
-  auto plan = make_plan(simulation, options, frames, *chosen);
-  if (!plan) return fail(plan.error());
-  DrawnColliders colliders;
-  if (!options.omits_colliders) {
-    const std::size_t used = std::min(max_memory, simulation.surface_memory());
-    auto made = DrawnColliders::make(simulation.scene(), simulation.collider_meshes(), *plan,
-                                     max_memory - used);
-    if (!made) return fail(made.error());
-    colliders = *std::move(made);
-  }
-  plan->colliders = colliders.surfaces();
-  if (auto checked = check_overwrites(*plan, simulation.scene()); !checked)
-    return fail(checked.error());
-  if (auto free = check_regions_file(options, simulation.scene(), *plan); !free)
-    return fail(free.error());
-  auto writer = make_writer(*plan);
-  if (!writer) return fail(writer.error());
-  warn_of_precision(simulation, *plan, *chosen);
-  return Output{*chosen, *std::move(writer), std::move(colliders)};
+// `-o FILE: REASON`.
+Result<void> of_out(const Result<void>& checked) {
+  if (checked) return {};
+  Error error = checked.error();
+  error.message = "-o " + error.message;
+  return fail(std::move(error));
 }
 
-// The content of the one-line summary.
-struct Summary {
-  int frame_count = 0;
-  long vertex_count = 0;
-  double peak_displacement = 0;
-  FileCounts files = {};
-};
+Result<AnimationBake> open_output(const Simulation& simulation, const BakeOptions& options,
+                                  const FrameSpan& frames, std::size_t max_memory) {
+  const auto chosen = chosen_surfaces(simulation, options);
+  if (!chosen) return fail(chosen.error());
+  auto bake = AnimationBake::make(simulation, {.file = options.out,
+                                               .frames = frames,
+                                               .surfaces = *chosen,
+                                               .is_world = is_world(options),
+                                               .omits_colliders = options.omits_colliders,
+                                               .resume = options.resume,
+                                               .max_memory = max_memory,
+                                               .should_stop = &was_interrupted});
+  if (!bake) return fail(bake.error());
+  const Scene& scene = simulation.scene();
+  if (auto checked = of_out(bake->check_inputs()); !checked) return fail(checked.error());
+  if (auto free = check_regions_file(options, scene, bake->plan()); !free)
+    return fail(free.error());
+  if (auto begun = bake->begin(); !begun) return fail(begun.error());
+  warn_of_precision(scene, *bake);
+  return bake;
+}
 
 // ", 15 files kept, 25 written" for a resumed bake.
 std::string resume_summary(const FileCounts& files) {
   return fmt::format(", {} kept, {} written", counted(files.kept, "file"), files.written);
-}
-
-// Writes one frame of every chosen surface.
-Result<void> write_frame(const Frame& frame, const BakeOptions& options, const Scene& scene,
-                         Output& output, Summary& summary) {
-  ++summary.frame_count;
-  output.poses.resize(output.surfaces.size());
-  Profile* const profile = options.is_profiled ? &output.profile : nullptr;
-  StageTimer posing(profile, Stage::Output);
-  for (std::size_t n = 0; n < output.surfaces.size(); ++n) {
-    const std::size_t k = output.surfaces[n];
-    const SurfaceFrame& surface = frame.surfaces()[k];
-    SurfacePose& pose = output.poses[n];
-    if (surface.peak_displacement() > summary.peak_displacement)
-      summary.peak_displacement = std::max(summary.peak_displacement, surface.told_displacement());
-    if (is_world(options)) {
-      pose.positions = surface.positions(std::move(pose.positions));
-      pose.is_mirrored = surface.transform().is_mirrored();
-    } else {
-      pose.positions = surface.object_positions();
-      pose.placement = scene.surfaces[k].transform.placement_at(frame.number());
-    }
-  }
-  posing.stop();
-  const StageTimer writing(profile, Stage::Writing);
-  auto colliders = output.colliders.at(frame.number());
-  if (!colliders) return fail(colliders.error());
-  return output.writer->write(frame.number(), output.poses, *std::move(colliders));
 }
 
 Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regions) {
@@ -214,15 +128,12 @@ Result<void> write_regions(Simulation& simulation, int frame, RegionsFile& regio
   return regions.write(*report, simulation);
 }
 
-Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
-                             const FrameSpan& frames, Output& output,
-                             std::optional<RegionsFile>& regions, std::optional<DtCheck>& check,
-                             const BakeSource& source) {
-  Summary summary;
+Result<void> write_frames(Simulation& simulation, const BakeOptions& options,
+                          const FrameSpan& frames, AnimationBake& output,
+                          std::optional<RegionsFile>& regions, std::optional<DtCheck>& check,
+                          const BakeSource& source) {
   std::optional<Measurer> measurer;
   if (source.hash) measurer.emplace(simulation);
-  for (const std::size_t k : output.surfaces)
-    summary.vertex_count += simulation.rest_shapes()[k].mesh.vertex_count();
   Progress progress(frames.last - simulation.scene().start + 1, options.is_quiet);
   Frame frame;
   const auto bake_frame = [&](int number) -> Result<void> {
@@ -234,10 +145,9 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
       if (auto advanced = check->advance(frame); !advanced) return advanced;
     }
     if (number < frames.first) return {};
-    if (check) check->compare(frame, output.surfaces);
+    if (check) check->compare(frame, output.surfaces());
     if (measurer) measurer->add(frame);
-    if (auto written = write_frame(frame, options, simulation.scene(), output, summary); !written)
-      return written;
+    if (auto written = output.write(frame); !written) return written;
     return regions ? write_regions(simulation, number, *regions) : Result<void>();
   };
   // Always from the scene's start, whichever frames are written.
@@ -251,16 +161,8 @@ Result<Summary> write_frames(Simulation& simulation, const BakeOptions& options,
     if (measures->hash != *source.hash)
       return fail(ErrorCode::SolverFailed, source.title + ": hash differs");
   }
-  StageTimer finishing(options.is_profiled ? &output.profile : nullptr, Stage::Writing);
-  if (auto finished = output.writer->finish(); !finished) return fail(finished.error());
-  finishing.stop();
-  summary.files = output.writer->file_counts();
-  if (regions) {
-    if (auto finished = regions->finish(simulation.solver_counts()); !finished) {
-      return fail(finished.error());
-    }
-  }
-  return summary;
+  if (auto finished = output.finish(); !finished) return finished;
+  return regions ? regions->finish(simulation.solver_counts()) : Result<void>();
 }
 
 // Describes the files that an interrupted run leaves for the next one.
@@ -393,27 +295,28 @@ int run_bake(const BakeOptions& options, const BakeSource& source) {
     regions.emplace(*std::move(created));
   }
 
-  const auto summary = write_frames(*simulation, options, *frames, *output, regions, check, source);
+  const auto written = write_frames(*simulation, options, *frames, *output, regions, check, source);
   print_warnings(*simulation);
   print_cache_notes(store->get(), options.cache);
-  if (!summary) return report(with_kept(summary.error(), kept_text(options)));
+  if (!written) return report(with_kept(written.error(), kept_text(options)));
 
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
   if (!options.is_quiet) {
-    print(stdout, fmt::format("{}: {}, {}, {:.2f} s, {}{}{}\n", printable(options.out),
-                              counted(summary->frame_count, "frame"),
-                              counted(summary->vertex_count, "vertex", "vertices"), elapsed.count(),
-                              peak_text(summary->peak_displacement, *frames, simulation->scene()),
-                              options.resume ? resume_summary(summary->files) : "",
-                              *store ? cache_summary(simulation->frame_counts()) : ""));
+    print(stdout,
+          fmt::format("{}: {}, {}, {:.2f} s, {}{}{}\n", printable(options.out),
+                      counted(output->frame_count(), "frame"),
+                      counted(output->vertex_count(), "vertex", "vertices"), elapsed.count(),
+                      peak_text(output->peak_displacement(), *frames, simulation->scene()),
+                      options.resume ? resume_summary(output->file_counts()) : "",
+                      *store ? cache_summary(simulation->frame_counts()) : ""));
   }
   if (check) {
     print(stdout, fmt::format("{}: {}\n", printable(options.out),
-                              check->to_text(summary->peak_displacement)));
+                              check->to_text(output->peak_displacement())));
   }
   if (options.is_profiled) {
     Profile profile = simulation->profile();
-    profile.add(output->profile);
+    profile.add(output->profile());
     print_profile(profile, elapsed.count());
   }
   return exit_done;

@@ -13,9 +13,8 @@
 #include "pliant/core/shelf.hpp"
 #include "pliant/core/stop_request.hpp"
 #include "pliant/core/thread_pool.hpp"
-#include "pliant/files/writer.hpp"
-#include "pliant/sampling/drawn_collider.hpp"
 #include "pliant/sampling/sampling.hpp"
+#include "pliant/simulation/animation_bake.hpp"
 #include "pliant/simulation/simulation.hpp"
 #include "pliant/sweep/sweep.hpp"
 
@@ -30,63 +29,16 @@ std::size_t share_of(std::size_t count, std::size_t max_memory) {
   return count == 0 ? max_memory : (max_memory - shelf_part(max_memory)) / count;
 }
 
-// The animation of a take in a file, as a bake writes it.
-class TakeWriter {
- public:
-  static Result<TakeWriter> make(const Simulation& simulation, const FrameSpan& frames,
-                                 const std::string& file, std::size_t max_memory) {
-    const Scene& scene = simulation.scene();
-    AnimationPlan plan{
-        .file = file, .first_frame = frames.first, .last_frame = frames.last, .fps = scene.fps};
-    for (std::size_t k = 0; k < scene.surfaces.size(); ++k) {
-      const RestShape& shape = simulation.rest_shapes()[k];
-      const Transform transform = scene.surfaces[k].transform.at(frames.first);
-      plan.surfaces.push_back({.name = shape.name,
-                               .mesh = &shape.mesh,
-                               .rest = to_world(transform, shape.mesh.positions),
-                               .is_mirrored = transform.is_mirrored()});
-    }
-    const std::size_t used = std::min(max_memory, simulation.surface_memory());
-    auto colliders =
-        DrawnColliders::make(scene, simulation.collider_meshes(), plan, max_memory - used);
-    if (!colliders) return fail(colliders.error());
-    plan.colliders = colliders->surfaces();
-    auto writer = make_writer(plan);
-    if (!writer) return fail(writer.error());
-    return TakeWriter(*std::move(writer), *std::move(colliders), scene.surfaces.size());
-  }
-
-  Result<void> write(const Frame& frame) {
-    for (std::size_t k = 0; k < poses_.size(); ++k) {
-      const SurfaceFrame& surface = frame.surfaces()[k];
-      poses_[k].positions = surface.positions(std::move(poses_[k].positions));
-      poses_[k].is_mirrored = surface.transform().is_mirrored();
-    }
-    auto colliders = colliders_.at(frame.number());
-    if (!colliders) return fail(colliders.error());
-    return writer_->write(frame.number(), poses_, *std::move(colliders));
-  }
-
-  Result<void> finish() { return writer_->finish(); }
-
- private:
-  TakeWriter(std::unique_ptr<AnimationWriter> writer, DrawnColliders colliders,
-             std::size_t surface_count)
-      : writer_(std::move(writer)), colliders_(std::move(colliders)), poses_(surface_count) {}
-
-  std::unique_ptr<AnimationWriter> writer_;
-  DrawnColliders colliders_;
-  std::vector<SurfacePose> poses_;
-};
-
 Result<Measures> play(Simulation& simulation, const FrameSpan& frames, const TakeRun& options,
                       const Scene& scene) {
   PLIANT_EXPECTS(options.file.empty() || !options.watch);
-  std::optional<TakeWriter> writer;
+  std::optional<AnimationBake> bake;
   if (!options.file.empty()) {
-    auto made = TakeWriter::make(simulation, frames, options.file, options.max_memory);
+    auto made = AnimationBake::make(
+        simulation, {.file = options.file, .frames = frames, .max_memory = options.max_memory});
     if (!made) return fail(made.error());
-    writer.emplace(*std::move(made));
+    bake.emplace(*std::move(made));
+    if (auto begun = bake->begin(); !begun) return fail(begun.error());
   }
   Measurer measurer(simulation);
   Frame frame;
@@ -102,16 +54,16 @@ Result<Measures> play(Simulation& simulation, const FrameSpan& frames, const Tak
       if (!goes_on) return fail(goes_on.error());
       if (!*goes_on) break;
     }
-    if (!writer) continue;
-    if (auto written = writer->write(frame); !written) return fail(written.error());
+    if (!bake) continue;
+    if (auto written = bake->write(frame); !written) return fail(written.error());
   }
   auto measures = measurer.measures();
   if (!measures) return measures;
   if (options.check) {
     if (auto same = options.check(scene); !same) return fail(same.error());
   }
-  if (writer) {
-    if (auto finished = writer->finish(); !finished) return fail(finished.error());
+  if (bake) {
+    if (auto finished = bake->finish(); !finished) return fail(finished.error());
   }
   return measures;
 }
