@@ -86,8 +86,17 @@ Bodies::Bodies(const Scene& scene, SceneSampling& sampling, const SimulationOpti
       profiles_(options.profile ? scene.surfaces.size() : 0),
       round_done_(options.round_done) {}
 
-Result<void> check_to_simulate(const Scene& scene, const StopRequest& should_stop) {
+std::vector<Error> problems_of(const Scene& scene, const StopRequest& should_stop) {
   std::vector<Error> errors = check_scene(scene, should_stop);
+  if (!errors.empty() && scene.fps > 0) {
+    const std::vector<Error> more = check_channels_at(scene, scene.start);
+    errors.insert(errors.end(), more.begin(), more.end());
+  }
+  return errors;
+}
+
+Result<void> check_to_simulate(const Scene& scene, const StopRequest& should_stop) {
+  std::vector<Error> errors = problems_of(scene, should_stop);
   if (scene.surfaces.empty()) {
     errors.push_back({.code = ErrorCode::InvalidInput,
                       .message = "the scene has no surface to simulate",

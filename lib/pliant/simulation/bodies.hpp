@@ -20,6 +20,10 @@
 
 namespace pliant {
 
+/// What `check_scene` finds; if anything, also what is wrong with channels at the first frame,
+/// since those of others may not be known. Internal to simulation.
+std::vector<Error> problems_of(const Scene& scene, const StopRequest& should_stop = {});
+
 /// Checks that `check_scene` finds nothing, and that there is a surface. Internal to simulation.
 Result<void> check_to_simulate(const Scene& scene, const StopRequest& should_stop = {});
 

@@ -66,7 +66,7 @@ Result<Simulation> Simulation::make(Scene scene, const SimulationOptions& option
 
 Result<std::vector<SceneNote>> Simulation::check(const Scene& scene,
                                                  const SimulationOptions& options) {
-  std::vector<Error> errors = check_scene(scene, options.should_stop);
+  std::vector<Error> errors = problems_of(scene, options.should_stop);
   if (!errors.empty()) return fail(as_one(std::move(errors), scene.origin.file));
 
   errors = check_channels(scene, {}, options.should_stop);
