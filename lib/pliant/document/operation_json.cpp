@@ -396,6 +396,7 @@ Result<std::vector<Operation>> parse_operations(std::string_view json,
   if (!list) return fail(list.error());
   if (!list->is_array()) return invalid("operations must be a list");
   Json root;
+  const EmptiedJson end(root);
   root[OperationReader::list_name] = std::move(*list);
   return OperationReader(root, should_stop).read();
 }

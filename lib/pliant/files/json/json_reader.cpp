@@ -48,6 +48,17 @@ class StoppingText {
   Progress* progress_;
 };
 
+void empty(JsonValue& value) {
+  if (auto* const list = value.get_ptr<JsonValue::array_t*>()) {
+    for (JsonValue& inner : *list) empty(inner);
+    list->clear();
+  }
+  if (auto* const members = value.get_ptr<JsonValue::object_t*>()) {
+    for (auto& [name, inner] : *members) empty(inner);
+    members->clear();
+  }
+}
+
 // Puts the values together as the parser of nlohmann-json meets them: its own does not know of
 // limits, and keeps the last of several members of one name. Each function returns whether to go
 // on.
@@ -165,6 +176,7 @@ class JsonBuilder {
   const TakeJsonText& take_text_;
   const Progress& progress_;
   JsonValue root_;
+  EmptiedJson end_{root_};
   std::vector<JsonValue*> open_;  // objects and lists, the innermost last: the one that grows
   std::vector<JsonStep> way_;     // in each of them, to the next value
   JsonValue* member_ = nullptr;   // the value of the last key
@@ -173,6 +185,8 @@ class JsonBuilder {
 };
 
 }  // namespace
+
+EmptiedJson::~EmptiedJson() { empty(value_); }
 
 Result<JsonValue> parse_json(std::string_view text, std::string_view kind,
                              const StopRequest& should_stop, std::size_t most_values,

@@ -36,6 +36,19 @@ struct JsonStep {
 using TakeJsonText =
     std::function<Result<bool>(std::span<const JsonStep> way, const std::string& text)>;
 
+/// Empties a value when its scope ends, from its leaves on. A value's own destructor allocates
+/// memory for all that it contains, and ends the program where there is none.
+class EmptiedJson {
+ public:
+  explicit EmptiedJson(nlohmann::json& value) : value_(value) {}
+  EmptiedJson(const EmptiedJson&) = delete;
+  EmptiedJson& operator=(const EmptiedJson&) = delete;
+  ~EmptiedJson();
+
+ private:
+  nlohmann::json& value_;
+};
+
 /// Parses the JSON of a file, in one pass: the only parser of JSON from outside. `kind`: "glTF", in
 /// messages. Errors: invalid JSON, with the line, but without quoting the text, which may be of any
 /// file; a member that an object has twice; a NUL byte, but for three at the end; a number beyond
