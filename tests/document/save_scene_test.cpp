@@ -158,6 +158,14 @@ TEST_CASE("a mesh without attributes is saved as .obj", "[document][save]") {
   CHECK(names_in(folder) == std::set<std::string>{"a.xml", "a.grid.obj", "a.skin-2.obj"});
 }
 
+TEST_CASE("attributes that nothing reads are not saved", "[document][save]") {
+  const ScratchFolder folder;
+  Mesh mesh = uneven();
+  mesh.attributes = {{"never_read", ramp(25)}};
+  saved(folder, of({skin("s", mesh)}));
+  CHECK(names_in(folder) == std::set<std::string>{"a.xml", "a.s.obj"});
+}
+
 TEST_CASE("a mesh whose attributes are read is saved as .ply", "[document][save]") {
   const ScratchFolder folder;
   Mesh mesh = uneven();

@@ -138,6 +138,9 @@ class SceneSaver {
       mesh.attributes.push_back({*attribute, std::move(*values)});
       values->clear();
     }
+    if (std::ranges::all_of(sources_of(surface),
+                            [](const ValueSource& source) { return source.attribute->empty(); }))
+      mesh.attributes.clear();  // nothing reads them
     auto path = write(surface.name, fmt::format("surface \"{}\"", surface.name), mesh);
     if (!path) return fail(path.error());
     surface.shape = MeshFile{.path = *std::move(path)};
@@ -147,6 +150,7 @@ class SceneSaver {
 
   Result<void> move_out(const std::string& name, ClosedMesh& closed) {
     if (closed.made) {
+      closed.made->attributes.clear();  // nothing reads them
       auto path = write(name, fmt::format("collider \"{}\"", name), *closed.made);
       if (!path) return fail(path.error());
       closed.made.reset();

@@ -10,7 +10,8 @@ namespace pliant {
 
 /// Writes a scene to a file, and beside it what is in memory, exact. With STEM the file's name
 /// without its ending, and NAME that of the surface or collider:
-/// - a `Mesh` to STEM.NAME.obj, or to STEM.NAME.ply if it has attributes or an .obj cannot keep it;
+/// - a `Mesh` to STEM.NAME.obj, or to STEM.NAME.ply if its attributes are read or an .obj cannot
+///   keep it;
 /// - values at the nodes of a sheet or net to STEM.NAME.CHANNEL.npy, of a hold to
 ///   STEM.NAME.hold.0.npy, counted from 0;
 /// - values at the vertices of a mesh to attributes of its .ply, which is made of a mesh in a file
