@@ -117,6 +117,65 @@ TEST_CASE("a document is saved whole, and knows its file", "[document]") {
   CHECK(one.file() == other);
 }
 
+TEST_CASE("a file that another program wrote is loaded as an edit", "[document]") {
+  const ScratchFolder folder;
+  const std::string file = folder.write("shot.xml", text);
+  SceneDocument one = SceneDocument::open(file).value();
+  CHECK(one.load().value().edits.empty());
+  REQUIRE(one.apply({edit::Set{"a.magnitude", "2"}}));
+  const std::string mine = one.text();
+  std::string other = text;
+  other.insert(other.find("<scene"), "<!-- theirs -->");
+  folder.write("shot.xml", other);
+  const auto loaded = one.load();
+  REQUIRE(loaded);
+  CHECK(loaded->name == "load");
+  CHECK(one.text() == other);
+  CHECK(one.is_saved());
+  CHECK_FALSE(one.has_file_changed().value());
+  REQUIRE(one.undo());
+  CHECK(one.text() == mine);
+  CHECK_FALSE(one.is_saved());
+  REQUIRE(one.save());  // in place of what was loaded
+  CHECK(read_file(file).value() == mine);
+
+  folder.write("shot.xml", "<scene>");
+  CHECK_FALSE(one.load());
+  CHECK(one.text() == mine);
+  CHECK(one.has_file_changed().value());
+  std::filesystem::remove(file);
+  CHECK_FALSE(one.load());
+  CHECK(one.text() == mine);
+}
+
+TEST_CASE("a document reads the files that it includes again", "[document]") {
+  const ScratchFolder folder;
+  const auto part = [&](const std::string& magnitude) {
+    folder.write("part.xml",
+                 "<fragment><point name='b' magnitude='" + magnitude + "'/></fragment>");
+  };
+  part("1");
+  const std::string file = folder.write(
+      "shot.xml",
+      "<scene version='1' start='1' end='9'><point name='a'/><include file='part.xml'/></scene>");
+  SceneDocument one = SceneDocument::open(file).value();
+  REQUIRE(one.apply({edit::Set{"a.magnitude", "2"}}));
+  const auto magnitude = [&] { return one.scene().forces[1].magnitude.at(1)[0]; };
+  part("7");
+  CHECK(magnitude() == 1);
+  REQUIRE(one.refresh());
+  CHECK(magnitude() == 7);
+  CHECK(one.undo_name() == "set a.magnitude");
+  part("x");
+  const auto refused = one.refresh();
+  REQUIRE_FALSE(refused);
+  CHECK(refused.error().file == (folder.path() / "part.xml").string());
+  CHECK(magnitude() == 7);
+  part("8");
+  REQUIRE(one.amend({edit::Set{"a.magnitude", "3"}}));
+  CHECK(magnitude() == 8);
+}
+
 TEST_CASE("messages name a document's new file, also beside included ones", "[document]") {
   const ScratchFolder folder;
   const std::string first = (folder.path() / "a.xml").string();
@@ -144,6 +203,35 @@ TEST_CASE("relative files keep a document in its folder", "[document]") {
   CHECK_THAT(saved.error().message, contains_text("relative to its own folder"));
   CHECK_FALSE(std::filesystem::exists(folder.path() / "b" / "a.xml"));
   CHECK(one.save_as((folder.path() / "c.xml").string()));
+}
+
+TEST_CASE("a link is saved to the file that it leads to, if that is wanted", "[document]") {
+  const ScratchFolder folder;
+  std::filesystem::create_directory(folder.path() / "real");
+  const std::filesystem::path file = folder.path() / "real" / "a.xml";
+  const std::string link = (folder.path() / "link.xml").string();
+  const std::string plain = "<scene version='1' start='1' end='2'><point name='a'/></scene>";
+  REQUIRE(write_file(file, plain));
+  std::filesystem::create_symlink("real/a.xml", link);
+  {
+    SceneDocument one = SceneDocument::open(link).value();
+    REQUIRE(one.apply({edit::Set{"a.magnitude", "2"}}));
+    for (const auto& saved : {one.save(), one.save_as(link)}) {
+      REQUIRE_FALSE(saved);
+      CHECK_THAT(saved.error().message, contains_text("symbolic link"));
+    }
+    CHECK(*read_file(file) == plain);
+  }
+  SceneDocument one = SceneDocument::open(link, {.follows_links = true}).value();
+  REQUIRE(one.apply({edit::Set{"a.magnitude", "2"}}));
+  REQUIRE(one.save());
+  CHECK(*read_file(file) == one.text());
+  REQUIRE(one.undo());
+  REQUIRE(one.save_as(link));
+  CHECK(*read_file(file) == plain);
+  CHECK(std::filesystem::is_symlink(link));
+  CHECK(one.file() == link);
+  CHECK(one.folder() == folder.path().string());
 }
 
 TEST_CASE("a scene made in code is saved to a file", "[document]") {

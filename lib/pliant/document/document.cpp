@@ -221,6 +221,22 @@ Result<Change> SceneDocument::take(std::string text, const Edit& edit,
   return Change{.name = edit.name, .edits = in_order(batches), .parts = edit.parts};
 }
 
+Result<Change> SceneDocument::load() {
+  auto text = read_file(file_, largest_scene_file, options_.should_stop);
+  if (!text) return fail(text.error());
+  auto change = replace(*text, "load");
+  if (change) saved_ = *std::move(text);
+  return change;
+}
+
+Result<void> SceneDocument::refresh() {
+  auto scene = checked(text_);
+  if (!scene) return fail(scene.error());
+  scene_ = *std::move(scene);
+  scene_before_.reset();
+  return {};
+}
+
 Result<Change> SceneDocument::undo() {
   if (!can_undo()) return fail(ErrorCode::InvalidInput, "there is nothing to undo", file_);
   std::vector<edit::EditBatch> batches;
@@ -247,15 +263,22 @@ const std::string& SceneDocument::undo_name() const { return edits_[last_].name;
 
 const std::string& SceneDocument::redo_name() const { return edits_[edits_[last_].next].name; }
 
+/// The file that has the text once it is saved to `file`.
+std::string SceneDocument::written_file(const std::string& file) const {
+  std::error_code unknown;
+  const auto place = std::filesystem::canonical(file, unknown);
+  return options_.follows_links && !unknown ? place.string() : file;
+}
+
 Result<void> SceneDocument::save() {
-  if (auto written = rewrite_file(file_, saved_, text_); !written) return written;
+  if (auto done = rewrite_file(written_file(file_), saved_, text_); !done) return done;
   saved_ = text_;
   return {};
 }
 
 Result<void> SceneDocument::save_as(const std::string& file) {
   if (auto place = check_scene_place(text_, file_, folder_, file); !place) return place;
-  if (auto written = write_file(file, text_); !written) return written;
+  if (auto done = write_file(written_file(file), text_); !done) return done;
   const auto rename = [&](Scene& scene) {
     for (SceneNote& note : scene.notes)
       if (note.file == file_) note.file = file;

@@ -19,6 +19,9 @@ struct DocumentOptions {
   std::string root = {};
   /// What else a scene must satisfy, such as `Simulation::check`; empty: nothing.
   std::function<Result<void>(const Scene& scene)> check = {};
+  /// Whether saving to a symbolic link writes the file that it leads to; else it is refused. Names
+  /// of files are relative to the folder of the link.
+  bool follows_links = false;
   /// Asked by all that reads or changes the document, which is then Interrupted.
   StopRequest should_stop = {};
 };
@@ -45,6 +48,8 @@ class SceneDocument {
   const std::string& text() const { return text_; }
   const Scene& scene() const { return scene_; }
   const std::string& file() const { return file_; }
+  /// Its relative names of files are those of this folder; empty: the current one.
+  const std::string& folder() const { return folder_; }
 
   /// Makes operations as one edit, all or nothing; `name`: of the edit, by default what the first
   /// one does. Edits that were undone cannot be made again, unless it is dropped. An edit that
@@ -70,6 +75,14 @@ class SceneDocument {
   /// both begin and end with. The parts of the `Change` are the objects that differ, and `scene`.
   /// Errors: those of `from_text`.
   Result<Change> replace(const std::string& text, const std::string& name = {});
+
+  /// Takes the text that the file has now in place of the whole, likewise; it is saved then.
+  /// Errors: those of `open`.
+  Result<Change> load();
+
+  /// Reads the files that the text includes, and all that it is checked against, again: one of them
+  /// has changed. Errors: those of `from_text`, and the scene stays as it is.
+  Result<void> refresh();
 
   /// Takes the last edit back, or makes it again. Errors: there is none; InvalidInput, Unreadable
   /// if a file that the scene includes has changed so that the text cannot be read any more.
@@ -108,6 +121,7 @@ class SceneDocument {
   };
 
   SceneDocument() = default;
+  std::string written_file(const std::string& file) const;
   Result<Scene> parse(const std::string& text) const;
   Result<Scene> checked(const std::string& text) const;
   Result<EditedText> edited(const std::string& text, const Scene& scene,
