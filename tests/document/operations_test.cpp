@@ -250,11 +250,120 @@ TEST_CASE("what is deleted is no target any more", "[document]") {
                                "\n\n  <!-- what");
   const std::string both = with(two, "targets=\"sheet\"", "targets=\"sheet b\"");
   CHECK(after(both, {edit::Delete{{"b"}}}) == shot);
-  CHECK_THAT(refusal(two, {edit::Delete{{"sheet"}}}),
-             contains_text("poke would act on all surfaces without it"));
+  CHECK_THAT(
+      refusal(two, {edit::Delete{{"sheet"}}}),
+      contains_text("poke.targets: only sheet is left to delete there; without it poke.targets is "
+                    "the default (all surfaces). Delete poke too"));
   const std::string gone = after(two, {edit::Delete{{"sheet", "poke"}}});
   CHECK(gone.find("sheet") == std::string::npos);
   CHECK(gone.find("<!-- what pushes -->") != std::string::npos);
+}
+
+TEST_CASE("whatever names a surface follows its new name, and is asked before it goes",
+          "[document][contents]") {
+  std::size_t count = 0;
+  for (const ElementFormat& element : scene_format()) {
+    for (const AttributeFormat& attribute : element.attributes) {
+      if (!attribute.names_surfaces) continue;
+      ++count;
+      const auto& objects = scene_format().front().children;
+      const bool is_object = std::ranges::any_of(objects, [&](const ChildFormat& one) {
+        return std::ranges::find(one.names, element.name) != one.names.end();
+      });
+      const std::string kind(is_object ? element.name : element.parents.front());
+      const std::string name(attribute.name);
+      CAPTURE(kind, name);
+      edit::Add add{kind, "it", {{name, "sheet"}}};
+      if (kind == "surface")
+        add.attributes.insert(add.attributes.end(), {{"columns", "3"}, {"rows", "3"}});
+      const std::string text =
+          after(shot, {edit::Delete{{"poke"}},
+                       edit::Add{"surface", "other", {{"columns", "3"}, {"rows", "3"}}}, add});
+      // A name of its own, even if another one begins with it.
+      SceneDocument document = document_of(text);
+      const auto change = document.apply({edit::Rename{"sheet", "sheet2"}});
+      REQUIRE(change);
+      CHECK(std::ranges::count(change->parts, "it." + name) == 1);
+      CHECK_THAT(document.text(), contains_text(" " + name + "="));
+      CHECK(document.text().find("sheet\"") == std::string::npos);
+      CHECK(document.text().find("sheet'") == std::string::npos);
+      CHECK(after(document.text(), {edit::Rename{"sheet2", "sheet"}}) == text);
+
+      CHECK_THAT(refusal(text, {edit::Delete{{"sheet"}}}),
+                 contains_text("it." + name + ": only sheet is left to delete there"));
+      CHECK(after(text, {edit::Delete{{"sheet", "it"}}}).find("sheet") == std::string::npos);
+      if (attribute.type != "names") continue;
+      const std::string both = after(text, {edit::Set{"it." + name, "other sheet"}});
+      CHECK(after(both, {edit::Delete{{"sheet"}}}) ==
+            after(both, {edit::Set{"it." + name, "other"}, edit::Delete{{"sheet"}}}));
+    }
+  }
+  CHECK(count > 10);
+}
+
+const std::string hall = R"(<scene version="1" start="1" end="9">
+  <surface name="sheet">
+    <grid columns="5" rows="5"/>
+  </surface>
+  <collider name="floor" targets="sheet"><plane/></collider>
+</scene>
+)";
+
+TEST_CASE("colliders are added with a shape and what it needs", "[document]") {
+  CHECK(after(hall, {edit::Add{"collider",
+                               "ball",
+                               {{"translate", "0 2 0"}, {"radius", "1"}, {"friction", "0.5"}},
+                               "",
+                               "sphere"}}) ==
+        with(hall, "</collider>\n",
+             "</collider>\n  <collider name=\"ball\" friction=\"0.5\">\n    <sphere "
+             "radius=\"1\"/>\n    <transform translate=\"0 2 0\"/>\n  </collider>\n"));
+  // Without a shape it has the first that there is, as a surface has; each shape may be given.
+  CHECK(after(hall, {edit::Add{"collider", "ball"}}) ==
+        after(hall, {edit::Add{"collider", "ball", {}, "", "sphere"}}));
+  for (const Collider& solid : xml::solid_kinds()) {
+    const std::string shape(shape_of(solid));
+    if (shape == "mesh") continue;  // which needs a file
+    CHECK_THAT(after(hall, {edit::Add{"collider", "it", {{"rotate", "0 9 0"}}, "", shape}}),
+               contains_text("<" + shape + "/>\n    <transform rotate=\"0 9 0\"/>"));
+  }
+  CHECK_THAT(refusal(hall, {edit::Add{"collider", "a", {}, "", "grid"}}),
+             contains_text("<collider> has no element \"grid\"; it belongs in <surface>; allowed: "
+                           "sphere, capsule, box, plane, mesh"));
+  CHECK_THAT(refusal(hall, {edit::Add{"point", "a", {}, "", "grid"}}),
+             contains_text("a <point> has no shape"));
+  CHECK_THAT(refusal(hall, {edit::Add{"collider", "a", {{"radios", "1"}}}}),
+             contains_text("radios"));
+}
+
+TEST_CASE("colliders are changed as surfaces are", "[document]") {
+  const std::string moved = with(hall, "<plane/>", "<plane/><transform translate=\"0 -1 0\"/>");
+  CHECK(after(hall, {edit::Set{"floor.translate", "0 -1 0"}}) == moved);
+  CHECK(after(hall, {edit::SetPart{"floor", "transform", {{"translate", "0 -1 0"}}}}) == moved);
+  CHECK_THAT(refusal(hall, {edit::SetPart{"floor", "material", {}}}),
+             contains_text("allowed: transform"));
+  // A curve of the transform may stand in the collider itself.
+  const std::string curve =
+      "<animate attribute=\"translate\"><key frame=\"1\" value=\"0 0 0\"/></animate>";
+  const std::string keyed = with(hall, "<plane/>", "<plane/>" + curve);
+  CHECK(after(keyed, {edit::Set{"floor.translate", "0 -1 0"}}) == moved);
+  CHECK_THAT(after(keyed, {edit::SetKey{"floor.translate", 5, "0 2 0"}}),
+             contains_text("<key frame=\"5\" value=\"0 2 0\"/></animate>"));
+  CHECK(after(keyed, {edit::Reset{"floor.translate"}}) == hall);
+
+  CHECK(after(hall, {edit::Duplicate{"floor", "wall"}}) ==
+        with(hall, "</collider>\n",
+             "</collider>\n  <collider name=\"wall\" targets=\"sheet\"><plane/></collider>\n"));
+  CHECK(after(hall, {edit::Delete{{"floor"}}}) ==
+        with(hall, "  <collider name=\"floor\" targets=\"sheet\"><plane/></collider>\n", ""));
+  CHECK(after(hall, {edit::Rename{"floor", "ground"}}) == with(hall, "\"floor\"", "\"ground\""));
+  const std::string all = with(hall, " targets=\"sheet\"", "");
+  CHECK(after(hall, {edit::Target{{"floor"}, {}}}) == all);
+  CHECK(after(all, {edit::Target{{"floor"}, {"sheet"}}}) == hall);
+  CHECK_THAT(refusal(hall, {edit::Target{{"sheet"}, {}}}),
+             contains_text("\"sheet\" has no targets"));
+  CHECK_THAT(refusal(hall, {edit::Target{{"scene"}, {}}}),
+             contains_text("the scene has no targets"));
 }
 
 TEST_CASE("forces are grouped and ungrouped", "[document]") {

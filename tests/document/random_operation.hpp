@@ -23,6 +23,7 @@ class RandomOperation {
     surfaces_ = objects_;
     for (const Force& one : scene.forces) objects_.push_back(one.name);
     for (const Group& one : scene.groups) objects_.push_back(one.name);
+    for (const Collider& one : scene.colliders) objects_.push_back(one.name);
     for (const NamedChannel& one : channels_of(scene)) {
       channels_.push_back(one.path);
       if (!one.is_animated()) continue;
@@ -264,7 +265,8 @@ class RandomOperation {
     return edit::Splice{set.channel, first, last, set.keys};
   }
   Operation addition() {
-    edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "blob"}), new_name()};
+    edit::Add add{chance_.pick({"point", "noise", "line", "group", "surface", "collider", "blob"}),
+                  new_name()};
     if (add.kind == "surface")
       add.attributes = {{"columns", "5"}, {"density", "2.0"}, {"rows", "4"}, {"enabled", "true"}};
     else

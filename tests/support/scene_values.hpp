@@ -46,6 +46,11 @@ class SceneValues {
       order += group.name + ' ';
       add_rows(group.name, group);
     }
+    for (const Collider& collider : scene.colliders) {
+      order += collider.name + ' ';
+      texts_[collider.name] = shape_of(collider);
+      for_each_part(collider, [&](const auto& part) { add_rows(collider.name, part); });
+    }
     texts_["order"] = order;
   }
 

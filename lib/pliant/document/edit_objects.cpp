@@ -1,4 +1,4 @@
-// Operations on surfaces, forces and groups.
+// Operations on surfaces, forces, groups and colliders.
 
 #include <algorithm>
 
@@ -41,10 +41,14 @@ Result<void> Editor::operator()(const Add& addition) {
   const ElementFormat& format = format_of(addition.kind);
   std::vector<std::string> parts = {addition.kind};
   for (const ChildFormat& child : format.children) {
-    if (child.is_choice()) element.children.push_back({.name = addition.shape});
-    if (child.is_choice()) parts.push_back(addition.shape);
+    if (child.is_choice()) {
+      parts.push_back(addition.shape.empty() ? std::string(child.names.front()) : addition.shape);
+      element.children.push_back({.name = parts.back()});
+    }
     if (child.is_part) parts.emplace_back(child.names.front());
   }
+  if (!addition.shape.empty() && element.children.empty())
+    return draft_.refuse(fmt::format("a <{}> has no shape", addition.kind));
   if (parts.size() > 1) {
     for (const Given& given : addition.attributes) {
       const auto part = std::ranges::find_if(parts, [&](const std::string& one) {
@@ -130,19 +134,18 @@ Result<void> Editor::operator()(const Delete& deletion) {
   const auto is_deleted = [&](ElementIndex element) {
     return std::ranges::binary_search(elements, element);
   };
-  for (const auto& [name, element] : objects()) {
-    if (is_deleted(element) || is_deleted(draft_.place(element).parent)) continue;
-    const auto targets = draft_.value(element, "targets");
-    if (!targets) continue;
-    const auto left = without(*targets, deletion.objects);
+  for (const auto& [path, object, element, format] : references()) {
+    if (is_deleted(object) || is_deleted(draft_.place(object).parent)) continue;
+    const std::string names = *draft_.value(element, format->name);
+    const auto left = without(names, deletion.objects);
     if (!left)
-      return draft_.refuse(fmt::format(
-          "{0}.targets: only {1} is left to delete there; {0} would act on all surfaces "
-          "without it. Delete {0} too, or give it other targets",
-          name, *targets));
-    if (xml::words_of(*left).size() == xml::words_of(*targets).size()) continue;
-    draft_.set(element, "targets", *left);
-    parts_.insert(name + ".targets");
+      return draft_.refuse(
+          fmt::format("{0}: only {1} is left to delete there; without it {0} is the default {2}. "
+                      "Delete {3} too, or change {0} first",
+                      path, names, format->standard, name_of(object)));
+    if (xml::words_of(*left).size() == xml::words_of(names).size()) continue;
+    draft_.set(element, format->name, *left);
+    parts_.insert(path);
   }
   for (const ElementIndex element : elements)
     if (!is_deleted(draft_.place(element).parent)) draft_.remove(element);
@@ -156,24 +159,21 @@ Result<void> Editor::operator()(const Rename& rename) {
   draft_.set(*found, "name", rename.name);
   parts_.insert(rename.object);
   parts_.insert(rename.name);
-  for (const auto& [name, element] : objects()) {
-    for (const char* const reference : {"targets", "drivenBy"}) {
-      if (!draft_.attribute(element, reference)) continue;
-      const std::string value = *draft_.value(element, reference);
-      std::string renamed;
-      std::size_t copied = 0;
-      bool is_changed = false;
-      for (const std::string_view word : xml::words_of(value)) {
-        if (word != rename.object) continue;
-        const std::size_t at = word.data() - value.data();
-        renamed.append(value, copied, at - copied).append(rename.name);
-        copied = at + word.size();
-        is_changed = true;
-      }
-      if (!is_changed) continue;
-      draft_.set(element, reference, renamed.append(value, copied));
-      parts_.insert(fmt::format("{}.{}", name, reference));
+  for (const auto& [path, object, element, format] : references()) {
+    const std::string value = *draft_.value(element, format->name);
+    std::string renamed;
+    std::size_t copied = 0;
+    bool is_changed = false;
+    for (const std::string_view word : xml::words_of(value)) {
+      if (word != rename.object) continue;
+      const std::size_t at = word.data() - value.data();
+      renamed.append(value, copied, at - copied).append(rename.name);
+      copied = at + word.size();
+      is_changed = true;
     }
+    if (!is_changed) continue;
+    draft_.set(element, format->name, renamed.append(value, copied));
+    parts_.insert(path);
   }
   return {};
 }
@@ -182,10 +182,11 @@ Result<void> Editor::operator()(const Target& target) {
   for (const std::string& name : target.objects) {
     const auto element = object(name);
     if (!element) return fail(element.error());
-    if (*element == Draft::root || draft_.name(*element) == "surface")
-      return draft_.refuse(fmt::format("{} is neither a force nor a group",
-                                       *element == Draft::root ? "the scene" : name));
-    set_or_remove(*element, "targets", fmt::format("{}", fmt::join(target.surfaces, " ")));
+    if (!find_attribute(draft_.name(*element), targets_attribute.name))
+      return draft_.refuse(fmt::format("{} has no targets",
+                                       *element == Draft::root ? "the scene" : in_quotes(name)));
+    set_or_remove(*element, targets_attribute.name,
+                  fmt::format("{}", fmt::join(target.surfaces, " ")));
     parts_.insert(name + ".targets");
     if (auto done = draft_.commit(); !done) return done;
   }

@@ -97,7 +97,7 @@ Result<void> Editor::set_constant(const Spot& spot, const std::string& value) {
   return draft_.commit();
 }
 
-/// Inserts a part that a surface lacks, in the order of the format. Errors: it comes from a file
+/// Inserts a part that an object lacks, in the order of the format. Errors: it comes from a file
 /// that is included.
 Result<void> Editor::insert_part(const Spot& spot, const xml::ElementText& part) {
   const std::string name = name_of(spot.object);
@@ -190,12 +190,12 @@ Result<void> Editor::operator()(const Freeze& freeze) {
 Result<void> Editor::operator()(const SetPart& set) {
   const auto object = this->object(set.surface);
   if (!object) return fail(object.error());
-  if (draft_.name(*object) != Description<Surface>::element)
-    return draft_.refuse(
-        fmt::format("{} is not a surface, so it has no parts", in_quotes(set.surface)));
   std::vector<std::string_view> allowed;
   for (const ChildFormat& child : format_of(draft_.name(*object)).children)
     if (child.is_part) allowed.push_back(child.names.front());
+  if (allowed.empty())
+    return draft_.refuse(
+        fmt::format("{} is not a surface or collider, so it has no parts", in_quotes(set.surface)));
   if (std::ranges::find(allowed, set.part) == allowed.end())
     return draft_.refuse(fmt::format("{} is not a part that can be set; allowed: {}",
                                      in_quotes(set.part), fmt::join(allowed, ", ")));
@@ -206,7 +206,7 @@ Result<void> Editor::operator()(const SetPart& set) {
   };
   for (const auto& [attribute, value] : set.attributes) name_part(attribute);
   const xml::ElementText text{.name = set.part, .attributes = set.attributes};
-  // Curves of the part may stand in the surface itself.
+  // Curves of the part may stand in the object itself.
   for (const ElementIndex child : draft_.children(*object, "animate")) {
     const std::string of(xml::trimmed(draft_.value(child, "attribute").value_or("")));
     if (!find_attribute(set.part, of)) continue;
@@ -229,7 +229,7 @@ Result<void> Editor::operator()(const SetPart& set) {
     draft_.replace_element(present.front(), text);
     if (auto done = draft_.commit(); !done || set.comment.empty()) return done;
   }
-  // The surface has its number still: only what stands in it has changed.
+  // The object has its number still: only what stands in it has changed.
   draft_.set_comment(draft_.children(*object, set.part).front(), set.comment);
   return draft_.commit();
 }

@@ -113,6 +113,21 @@ const AttributeFormat* Editor::find_attribute(std::string_view element,
   return found != attributes.end() ? &*found : nullptr;
 }
 
+/// The attributes that name surfaces, where they are given.
+std::vector<Editor::Reference> Editor::references() const {
+  std::vector<Reference> found;
+  for (const auto& [name, object] : objects()) {
+    std::vector<ElementIndex> elements = {object};
+    for (const ElementIndex child : draft_.children(object))
+      if (!is_force(child)) elements.push_back(child);
+    for (const ElementIndex element : elements)
+      for (const AttributeFormat& format : format_of(draft_.name(element)).attributes)
+        if (format.names_surfaces && draft_.attribute(element, format.name))
+          found.push_back({fmt::format("{}.{}", name, format.name), object, element, &format});
+  }
+  return found;
+}
+
 /// The elements whose attributes an object has: its own, its parts, and of several kinds of which
 /// one stands there the one that does.
 std::vector<std::string> Editor::parts_of(ElementIndex object) const {
@@ -168,15 +183,15 @@ Result<Spot> Editor::spot_on_path(const std::string& path, ElementIndex object,
 }
 
 std::optional<ElementIndex> Editor::animated(const Spot& spot) const {
-  if (!spot.element && draft_.name(spot.object) != "surface") return std::nullopt;
   if (spot.attribute() == "falloff") {
+    if (!spot.element) return std::nullopt;
     const std::vector<ElementIndex> curves = draft_.children(*spot.element, "falloff");
     return curves.empty() ? std::nullopt : std::optional(curves.front());
   }
   if (!spot.format.is_keyable) return std::nullopt;
-  std::vector<ElementIndex> owners;
-  if (spot.element) owners.push_back(*spot.element);
-  if (draft_.name(spot.object) == "surface") owners.push_back(spot.object);
+  // Curves of a part may stand in the object itself.
+  std::vector<ElementIndex> owners = {spot.object};
+  if (spot.element && *spot.element != spot.object) owners.insert(owners.begin(), *spot.element);
   for (const ElementIndex owner : owners)
     for (const ElementIndex child : draft_.children(owner, "animate"))
       if (xml::trimmed(draft_.value(child, "attribute").value_or("")) == spot.attribute())

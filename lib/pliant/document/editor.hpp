@@ -74,6 +74,13 @@ class Editor {
   // Finding things: editor.cpp.
   using NamedElement = std::pair<std::string, ElementIndex>;
   std::vector<NamedElement> objects() const;
+  struct Reference {
+    std::string path;  // of an attribute that names surfaces
+    ElementIndex object = 0;
+    ElementIndex element = 0;  // of the object, or a part of it
+    const AttributeFormat* format = nullptr;
+  };
+  std::vector<Reference> references() const;
   Result<ElementIndex> object(std::string_view name) const;
   bool is_force(std::string_view element) const;
   bool is_force(ElementIndex element) const;

@@ -13,10 +13,10 @@
 namespace pliant {
 
 // The operations of a `SceneDocument`. A value is the text that a scene file has for it;
-// `edit::to_text` writes numbers so. A path is `NAME.attribute`: the name of a surface, force or
-// group, or `scene`, and any attribute of its element or of the parts of it, such as
-// `sheet.columns`, `sheet.density` or `poke.center.progress`. A channel is the path of what has
-// keys; `NAME.falloff` is a force's <falloff>, whose frames are `at`.
+// `edit::to_text` writes numbers so. A path is `NAME.attribute`: the name of a surface, force,
+// group or collider, or `scene`, and any attribute of its element, its shape or the parts of it,
+// such as `sheet.columns`, `sheet.density` or `poke.center.progress`. A channel is the path of what
+// has keys; `NAME.falloff` is a force's <falloff>, whose frames are `at`.
 namespace edit {
 
 /// The fewest digits that are read as the same double; several numbers are separated by blanks.
@@ -55,12 +55,12 @@ struct Freeze {
   double frame = 0;
 };
 
-/// A part of a surface with exactly these attributes, in place of what it has: a whole <material>,
-/// for example. `comment`, if it is not empty, stands before it, one line of the file for each of
-/// its own, in place of the comment that stands there.
+/// A part of a surface or collider with exactly these attributes, in place of what it has: a whole
+/// <material>, for example. `comment`, if it is not empty, stands before it, one line of the file
+/// for each of its own, in place of the comment that stands there.
 struct SetPart {
-  std::string surface;
-  std::string part;  ///< `transform`, `material`, `tangents` or `solver`
+  std::string surface;  ///< or collider
+  std::string part;     ///< `transform`; of a surface also `material`, `tangents` or `solver`
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string comment = {};
 };
@@ -178,18 +178,20 @@ struct Splice {
   std::variant<CurveKeys<1>, CurveKeys<3>> keys;
 };
 
-// Surfaces, forces and groups.
+// Surfaces, forces, groups and colliders.
 
 /// An attribute and its value.
 using Given = std::pair<std::string, std::string>;
 
-/// Adds one behind the others of its kind. Attributes of a surface stand in the part that has them.
+/// Adds one, a surface behind the others, all else at the end. Attributes of a surface or collider
+/// stand in its shape or the part that has them.
 struct Add {
-  std::string kind;  ///< `surface`, `group`, or that of a force, such as `point`
+  std::string kind;  ///< `surface`, `group`, `collider`, or that of a force, such as `point`
   std::string name;
   std::vector<Given> attributes = {};
-  std::string group = {};      ///< of a force; empty: none
-  std::string shape = "grid";  ///< of a surface: `grid`, `mesh` or `subdivision`
+  std::string group = {};  ///< of a force; empty: none
+  /// Of a surface or collider, such as `mesh`; empty: the first that there is, `grid` or `sphere`.
+  std::string shape = {};
 };
 
 /// A copy behind the original. Forces in a copied group get free names.
@@ -198,19 +200,19 @@ struct Duplicate {
   std::string name;
 };
 
-/// Deletes objects, and forgets them as targets. Refused if a force or group would have no target
-/// left, since it would then act on all surfaces.
+/// Deletes objects, also where they are named, such as targets. Refused if no name would be left
+/// there: a force without targets would act on all surfaces.
 struct Delete {
   std::vector<std::string> objects;
 };
 
-/// Another name; targets and `drivenBy` follow.
+/// Another name, also where it is named: in `targets`, `drivenBy`, `follow`.
 struct Rename {
   std::string object;
   std::string name;
 };
 
-/// The surfaces on which forces or groups act; none: all.
+/// The surfaces on which forces or groups act, or that meet colliders; none: all.
 struct Target {
   std::vector<std::string> objects;
   std::vector<std::string> surfaces;

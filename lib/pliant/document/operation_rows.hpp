@@ -120,12 +120,13 @@ struct Description<edit::Freeze> {
 template <>
 struct Description<edit::SetPart> {
   static constexpr std::string_view name = "setPart";
-  static constexpr std::string_view meaning = "Gives a whole part of a surface.";
+  static constexpr std::string_view meaning = "Gives a whole part of a surface or collider.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("surface", "name of a surface"), of.surface...);
-    row(required("part", "`transform`, `material`, `tangents` or `solver`"), of.part...);
+    row(required("surface", "name of a surface or collider"), of.surface...);
+    row(required("part", "`transform`; of a surface also `material`, `tangents` or `solver`"),
+        of.part...);
     row(Attribute{.name = "attributes",
                   .meaning = "all attributes that it has then",
                   .need = Need::Required},
@@ -337,20 +338,22 @@ struct Description<edit::Splice> {
   }
 };
 
-// Surfaces, forces and groups.
+// Surfaces, forces, groups and colliders.
 
 template <>
 struct Description<edit::Add> {
   static constexpr std::string_view name = "add";
-  static constexpr std::string_view meaning = "Adds a surface, a force or a group.";
+  static constexpr std::string_view meaning = "Adds a surface, a force, a group or a collider.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("kind", "`surface`, `group`, or that of a force, such as `point`"), of.kind...);
+    row(required("kind", "`surface`, `group`, `collider`, or that of a force, such as `point`"),
+        of.kind...);
     row(required("name", "a new name"), of.name...);
     row(given_row, of.attributes...);
     row(Attribute{.name = "group", .meaning = "of a force; empty: none"}, of.group...);
-    row(Attribute{.name = "shape", .meaning = "of a surface: `grid`, `mesh` or `subdivision`"},
+    row(Attribute{.name = "shape",
+                  .meaning = "of a surface or collider, such as `mesh`; empty: `grid` or `sphere`"},
         of.shape...);
   }
 };
@@ -362,7 +365,7 @@ struct Description<edit::Duplicate> {
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("object", "name of a surface, force or group"), of.object...);
+    row(required("object", "name of a surface, force, group or collider"), of.object...);
     row(required("name", "of the copy"), of.name...);
   }
 };
@@ -370,11 +373,11 @@ struct Description<edit::Duplicate> {
 template <>
 struct Description<edit::Delete> {
   static constexpr std::string_view name = "delete";
-  static constexpr std::string_view meaning = "Deletes objects, also as targets.";
+  static constexpr std::string_view meaning = "Deletes objects, also where they are named.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("objects", "names of surfaces, forces or groups"), of.objects...);
+    row(required("objects", "names of surfaces, forces, groups or colliders"), of.objects...);
   }
 };
 
@@ -386,7 +389,7 @@ struct Description<edit::Rename> {
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("object", "name of a surface, force or group"), of.object...);
+    row(required("object", "name of a surface, force, group or collider"), of.object...);
     row(required("name", "a new name"), of.name...);
   }
 };
@@ -394,11 +397,12 @@ struct Description<edit::Rename> {
 template <>
 struct Description<edit::Target> {
   static constexpr std::string_view name = "target";
-  static constexpr std::string_view meaning = "Gives forces or groups the surfaces they act on.";
+  static constexpr std::string_view meaning =
+      "Gives forces, groups or colliders the surfaces they act on.";
 
   template <class Row, class... Of>
   static void rows(Row&& row, Of&... of) {
-    row(required("objects", "names of forces or groups"), of.objects...);
+    row(required("objects", "names of forces, groups or colliders"), of.objects...);
     row(required("surfaces", "names of surfaces; none: all"), of.surfaces...);
   }
 };
