@@ -139,6 +139,15 @@ std::optional<Operation> operation_of(std::string_view line, const Scene& scene)
     case 'm':
       return edit::MoveKeys{in.keys(), in.number(), in.numbers(),
                             in.field() == "!" ? edit::Collision::Replace : edit::Collision::Refuse};
+    case 'z':
+      return edit::ScaleKeys{
+          in.keys(),
+          in.number(),
+          in.number(1),
+          in.numbers(),
+          in.numbers(),
+          in.number(),
+          in.field() == "!" ? edit::Collision::Replace : edit::Collision::Refuse};
     case 't':
       return edit::SetTangent{in.keys(), in.side(), in.maybe_text(), in.maybe_text()};
     case 'h':

@@ -139,6 +139,9 @@ TEST_CASE("operations are written as people would", "[document][json]") {
   CHECK(json_of(edit::MoveKeys{{{"a.b", {1, -0.0}}, {"c.d", {}}}, 2, {1e300}}) ==
         R"([{"op":"moveKeys","keys":[{"channel":"a.b","frames":[1,-0.0]},)"
         R"({"channel":"c.d","frames":[]}],"frames":2,"rise":[1e+300]}])");
+  CHECK(json_of(edit::ScaleKeys{{{"a.b", {1}}}, 2, 0.5, {}, {-1, 0, 1}, 1}) ==
+        R"([{"op":"scaleKeys","keys":[{"channel":"a.b","frames":[1]}],"frame":2,"timeFactor":0.5,)"
+        R"("valueFactor":[-1,0,1],"step":1}])");
   CHECK(json_of(edit::SetTangent{{}, edit::Side::In, "flat"}) ==
         R"([{"op":"setTangent","keys":[],"side":"in","tangent":"flat"}])");
   CHECK(json_of(edit::Add{"point", "p", {{"magnitude", "1"}, {"center", "0 0 0"}}}) ==
@@ -316,9 +319,13 @@ TEST_CASE("the list of operations says all that another language needs", "[docum
   CHECK(find("moveKeys", "collision").standard == "\"refuse\"");
   CHECK(find("moveKeys", "collision").words.size() == 2);
   CHECK(find("moveKeys", "rise").type == "numbers");
+  CHECK(find("scaleKeys", "timeFactor").range == "> 0");
+  CHECK(find("scaleKeys", "timeFactor").standard == "1");
+  CHECK(find("scaleKeys", "valueFactor").standard == "(1)");
   CHECK(find("bakeKeys", "step").standard == "1");
   CHECK(find("bakeKeys", "step").unit == "frame");
-  CHECK(find("scale", "digits").range == "≥ 0");
+  for (const char* const name : {"scale", "moveKeys", "scaleKeys"})
+    CHECK(find(name, "digits").range == "≥ 0");
   CHECK(find("splice", "curve").type == "curve");
   CHECK(find("deleteKeys", "keys").members.size() == 2);
   CHECK(find("add", "attributes").members[0].name == "attribute");

@@ -1,11 +1,16 @@
 // What each operation does to the text, byte by byte.
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "pliant/document/document.hpp"
+#include "pliant/scene/format/contents.hpp"
+#include "pliant/scene/format/format.hpp"
 #include "support/catch.hpp"
 
 namespace pliant::testing {
@@ -157,6 +162,8 @@ TEST_CASE("keys are set, deleted and moved in the text", "[document]") {
         with(with(shot, "frame=\"12\"", "frame=\"14.5\""), "frame=\"24\"", "frame=\"26.5\""));
   CHECK(after(shot, {edit::MoveKeys{{{channel, {36}}}, 0, {0.25}}}) ==
         with(shot, "\"3e0\"", "\"3.25\""));
+  CHECK(after(shot, {edit::MoveKeys{{{channel, {12, 36}}}, 0, {0.1234}, {}, 3}}) ==
+        with(with(shot, "value=\"2.50\"", "value=\"2.62\""), "\"3e0\"", "\"3.12\""));
   // Past another key: it is written behind that.
   CHECK(after(shot, {edit::MoveKeys{{{channel, {12}}}, 14}}) ==
         with(with(shot, "\n      <key frame=\"12\" value=\"2.50\" tangent=\"flat\"/>", ""),
@@ -171,6 +178,64 @@ TEST_CASE("keys are set, deleted and moved in the text", "[document]") {
       "is one");
   CHECK(refusal(shot, {edit::DeleteKeys{{{channel, {2}}}}}) ==
         "shot.xml: error: poke.forceRadius has no key at frame 2; it has 4, from 1 to 36");
+}
+
+TEST_CASE("keys are scaled in the text", "[document]") {
+  const std::string channel = "poke.forceRadius";
+  CHECK(after(shot, {edit::ScaleKeys{{{channel, {24, 36}}}, 24, 2, {}, {}}}) ==
+        with(shot, "frame=\"36\"", "frame=\"48\""));
+  CHECK(
+      after(shot, {edit::ScaleKeys{{{channel, {12, 24}}}, 12, 1, {0.5}, {2}}}) ==
+      with(with(shot, "\"2.50\" tangent", "\"4.5\" tangent"), "value=\"1\" i", "value=\"1.5\" i"));
+  // Past another key: it is written behind that.
+  CHECK(after(shot, {edit::ScaleKeys{{{channel, {12}}}, 0, 2.25}}) ==
+        with(with(shot, "\n      <key frame=\"12\" value=\"2.50\" tangent=\"flat\"/>", ""),
+             "\"step\"/>",
+             "\"step\"/>\n      <key frame=\"27\" value=\"2.50\" tangent=\"flat\"/>"));
+  const auto halved = [&](double step, edit::Collision collision) {
+    return edit::ScaleKeys{{{channel, {12, 24, 36}}}, 1, 0.5, {}, {}, step, collision};
+  };
+  CHECK(after(shot, {halved(1, edit::Collision::Refuse)}) ==
+        with(with(with(shot, "frame=\"12\"", "frame=\"7\""), "frame=\"24\"", "frame=\"13\""),
+             "frame=\"36\"", "frame=\"19\""));
+  // 7, 12.5 and 18.5 to tens.
+  CHECK(refusal(shot, {halved(10, edit::Collision::Replace)}) ==
+        "shot.xml: error: poke.forceRadius: the key of frame 24 would come to frame 10, where "
+        "there is one");
+  CHECK(refusal(shot, {edit::ScaleKeys{{{channel, {12}}}, 0, 2}}) ==
+        "shot.xml: error: poke.forceRadius: the key of frame 12 would come to frame 24, where "
+        "there is one");
+  CHECK(after(shot,
+              {edit::ScaleKeys{{{channel, {12}}}, 0, 2, {}, {}, 0, edit::Collision::Replace}}) ==
+        with(with(shot, "frame=\"12\"", "frame=\"24\""),
+             "\n\n      <key frame=\"24\" value=\"1\" interpolation=\"step\"/>", ""));
+  // Factors of 1 change no byte.
+  CHECK(after(shot, {edit::ScaleKeys{{{channel, {1, 12, 24, 36}}}, 3, 1, {9}, {1}, 5}}) == shot);
+
+  const auto refused = [&](edit::ScaleKeys scale, const std::string& why) {
+    scale.keys = {{channel, {12, 24}}};
+    CHECK(refusal(shot, {scale}) == "shot.xml: error: " + why);
+  };
+  refused({{}, NAN}, "the frame must be finite, not nan");
+  for (const double factor : {0.0, -1.0, double{INFINITY}})
+    refused({{}, 0, factor},
+            fmt::format("the time factor must be finite and above 0, not {}", factor));
+  refused({{}, 0, 1, {}, {}, -1}, "the step must be finite and not below 0, not -1");
+  refused({{}, 0, 1, {}, {1, 2, 3}},
+          "poke.forceRadius: the value factor has 3 numbers; one for all components or 1 are "
+          "possible");
+  refused({{}, 0, 1, {1, 2}},
+          "poke.forceRadius: the value has 2 numbers; one for all components "
+          "or 1 are possible");
+
+  const std::string states = with(shot, "<!-- keys by hand -->",
+                                  "<animate attribute=\"enabled\"><key frame=\"1\" "
+                                  "value=\"true\"/><key frame=\"6\" value=\"false\"/></animate>");
+  const edit::KeysOf switches{"poke.enabled", {1, 6}};
+  CHECK(after(states, {edit::ScaleKeys{{switches}, 1, 3}}) ==
+        with(states, "frame=\"6\"", "frame=\"16\""));
+  CHECK(refusal(states, {edit::ScaleKeys{{switches}, 1, 1, {}, {2}}}) ==
+        "shot.xml: error: poke.enabled: a boolean channel has no multiples");
 }
 
 TEST_CASE("a key without a value keeps the curve", "[document]") {
@@ -702,6 +767,10 @@ TEST_CASE("keys with a $ stay, unless they would have to change", "[document]") 
   CHECK(after(text, {edit::DeleteKeys{keys({5})}}) ==
         with(text, "      <key frame=\"5\" value=\"$far * 2\"/>\n", ""));
   CHECK(after(text, {edit::SetKey{"f.magnitude", 5, "6"}}) == with(text, "$far * 2", "6"));
+  CHECK(after(text, {edit::ScaleKeys{keys({1, 5}), 1, 1.25}}) ==
+        with(text, "frame=\"5\"", "frame=\"6\""));
+  CHECK(refusal(text, {edit::ScaleKeys{keys({5}), 0, 1, {}, {2}}}) ==
+        refusal(text, {edit::MoveKeys{keys({5}), 0, {1}}}));
   CHECK(refusal(text, {edit::MoveKeys{keys({5}), 0, {1}}}) ==
         "shot.xml: error: f.magnitude: the value with $ in line 7: <key> value=\"$far * 2\" would "
         "have to change; change what it stands for, or set a number in its place first");

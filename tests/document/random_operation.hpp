@@ -87,10 +87,13 @@ class RandomOperation {
       case 19:
         return set_curve();
       case 20:
+        return edit::MoveKeys{keys(), chance_.once_in(3) ? 0 : chance_.between(-6, 6) / 2.0, rise(),
+                              collision()};
       case 21:
-        return edit::MoveKeys{
-            keys(), chance_.once_in(3) ? 0 : chance_.between(-6, 6) / 2.0, rise(),
-            chance_.once_in(2) ? edit::Collision::Replace : edit::Collision::Refuse};
+        return edit::ScaleKeys{
+            keys(),     frame(), chance_.between(chance_.once_in(20) ? 0 : 1, 6) / 2.0,
+            rise(),     rise(),  chance_.between(0, 2) / 2.0,
+            collision()};
       case 22:
         return tangent();
       case 23:
@@ -167,6 +170,9 @@ class RandomOperation {
     if (chance_.once_in(3)) return {};
     if (chance_.once_in(3)) return {0.5, 0, -0.25};
     return {chance_.between(-3, 3) / 4.0};
+  }
+  edit::Collision collision() {
+    return chance_.once_in(2) ? edit::Collision::Replace : edit::Collision::Refuse;
   }
   std::vector<edit::KeysOf> keys() {
     std::vector<edit::KeysOf> selection;

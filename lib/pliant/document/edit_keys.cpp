@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/document/edit_curves.hpp"
 #include "pliant/scene/text/text.hpp"
+#include "pliant/timeline/curve_numbers.hpp"
 #include "pliant/timeline/edit/edit.hpp"
 
 namespace pliant::edit {
@@ -16,6 +18,61 @@ namespace {
 /// A key's attributes that say the segment behind it.
 constexpr std::string_view segment_attributes[] = {"interpolation", "amplitude", "period", "back",
                                                    "control"};
+
+/// A curve some of whose keys are scaled, in their old order; new frames are multiples of `step`.
+/// Errors: an amplitude that would need another factor for each component.
+template <int D>
+Checked<CurveKeys<D>> scaled_some(const CurveKeys<D>& before, const std::vector<std::size_t>& keys,
+                                  const Scaling<D>& scaling, double step) {
+  const auto is_even = std::ranges::all_of(scaling.value_factor, [&](double factor) {
+    return std::fabs(factor) == std::fabs(scaling.value_factor[0]);
+  });
+  const auto stepped = [&](double frame) {
+    if (step == 0 || scaling.time_factor == 1) return frame;
+    // Multiples of 0.1, for example, are short only as quotients.
+    const double per_frame = std::round(1 / step);
+    const double count = std::round(frame / step);
+    return (step == 1 / per_frame ? count / per_frame : count * step) + 0.0;  // no -0
+  };
+  const CurveKeys<D> scaled = scaled_keys(before, scaling);
+  const bool are_all = keys.size() == before.keys.size();
+  CurveKeys<D> wanted = are_all ? scaled : before;
+  for (const std::size_t k : keys) {
+    Key<D>& key = wanted.keys[k] = scaled.keys[k];
+    key.frame = stepped(key.frame);
+    const Interpolation& next = before.keys[k].next;
+    if (!are_all && !std::ranges::binary_search(keys, k + 1))
+      key.next = next;
+    else if (!is_even && next.kind == Interpolation::Kind::Easing && next.ease == Ease::Elastic &&
+             next.amplitude)
+      return tl::unexpected(
+          Complaint{k, fmt::format("the elastic segment behind frame {} has one amplitude for all "
+                                   "components; their value factors must be of the same size",
+                                   before.keys[k].frame)});
+  }
+  if (!wanted.loop) return wanted;
+  // The loop goes with keys where it begins and ends.
+  const auto end_at = [&](double frame, double scaled_frame) {
+    const auto key = std::ranges::lower_bound(before.keys, frame, {}, &Key<D>::frame);
+    if (key != before.keys.end() && key->frame == frame)
+      return wanted.keys[key - before.keys.begin()].frame;
+    return are_all ? stepped(scaled_frame) : frame;
+  };
+  wanted.loop->from = end_at(before.loop->from, scaled.loop->from);
+  wanted.loop->to = end_at(before.loop->to, scaled.loop->to);
+  return wanted;
+}
+
+/// Rounds the numbers in the unit of the channel that differ from those before.
+template <int D>
+void round_changed(CurveKeys<D> before, CurveKeys<D>& wanted, int digits) {
+  std::vector<double> old;
+  for_each_number(before, [&](double& number) { old.push_back(number); });
+  auto was = old.begin();
+  for_each_number(wanted, [&](double& number) {
+    if (number != *was++) number = with_digits(number, digits);
+  });
+}
 
 }  // namespace
 
@@ -85,52 +142,97 @@ Result<void> Editor::operator()(const DeleteKeys& deletion) {
       });
 }
 
+/// A number of each component, of those that an operation has for all or each of them.
+template <int D>
+Result<Value<D>> Editor::of_components(const KeyedCurve<D>& curve, std::string_view name,
+                                       const std::vector<double>& numbers, double absent) const {
+  if (numbers.size() > 1 && numbers.size() != D)
+    return draft_.refuse(
+        fmt::format("{}: the {} has {} numbers; one for all components or {} are possible",
+                    curve.channel, name, numbers.size(), D));
+  Value<D> value;
+  for (std::size_t c = 0; c < D; ++c)
+    value[c] = numbers.empty() ? absent : numbers[numbers.size() == 1 ? 0 : c];
+  return value;
+}
+
+/// Writes the keys of `wanted`, which are those of the curve in their old order; `moved` may have
+/// come to the frames of others.
+template <int D>
+Result<void> Editor::write_moved(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                                 const std::vector<std::size_t>& moved, Collision collision) {
+  const auto frame_of = [](const KeyEntry<D>& entry) { return entry.key.frame; };
+  std::vector<KeyEntry<D>> entries, others;
+  for (std::size_t k = 0; k < wanted.keys.size(); ++k)
+    (std::ranges::binary_search(moved, k) ? entries : others).push_back({wanted.keys[k], k});
+  std::set<double> taken;
+  for (const KeyEntry<D>& entry : entries) {
+    const double frame = entry.key.frame;
+    const bool is_first = taken.insert(frame).second;
+    const bool is_free = !std::ranges::binary_search(others, frame, {}, frame_of);
+    if (is_first && (is_free || collision == Collision::Replace)) continue;
+    return draft_.refuse(
+        fmt::format("{}: the key of frame {} would come to frame {}, where there is one",
+                    curve.channel, curve.keys()[*entry.origin].frame, frame));
+  }
+  std::erase_if(others, [&](const auto& one) { return taken.contains(one.key.frame); });
+  entries.insert(entries.end(), others.begin(), others.end());
+  std::ranges::stable_sort(entries, {}, frame_of);
+  return write_curve(curve, wanted, entries);
+}
+
 Result<void> Editor::operator()(const MoveKeys& move) {
-  return for_each_keys(move.keys, [&]<int D>(const KeyedCurve<D>& curve,
-                                             const std::vector<std::size_t>& keys) {
-    const auto refuse = [&](std::string_view why) {
-      return Result<void>(draft_.refuse(fmt::format("{}: {}", curve.channel, why)));
-    };
-    if (move.rise.size() > 1 && move.rise.size() != D)
-      return refuse(
-          fmt::format("the rise has {} numbers; one for all components or {} are possible",
-                      move.rise.size(), D));
-    const auto frame_of = [](const KeyEntry<D>& entry) { return entry.key.frame; };
-    std::vector<KeyEntry<D>> moved, others;
-    CurveKeys<D> wanted = curve.curve.keys();
-    for (std::size_t k = 0; k < curve.keys().size(); ++k) {
-      KeyEntry<D> entry{curve.keys()[k], k};
-      if (!std::ranges::binary_search(keys, k)) {
-        others.push_back(entry);
-        continue;
-      }
-      const double frame = entry.key.frame;
-      entry.key.frame += move.frames;
-      if (wanted.loop && curve.curve.keys().loop->from == frame)
-        wanted.loop->from = entry.key.frame;
-      for (std::size_t c = 0; c < D && !move.rise.empty(); ++c) {
-        const double rise = move.rise[move.rise.size() == 1 ? 0 : c];
-        if (rise == 0) continue;
-        entry.key.value[c] += rise;
-        if (entry.key.left) (*entry.key.left)[c] += rise;
-      }
-      moved.push_back(entry);
-    }
-    std::set<double> taken;
-    for (const KeyEntry<D>& entry : moved) {
-      const double frame = entry.key.frame;
-      const auto other = std::ranges::lower_bound(others, frame, {}, frame_of);
-      if (other == others.end() || other->key.frame != frame) continue;
-      if (move.collision == Collision::Refuse)
-        return refuse(fmt::format("the key of frame {} would come to frame {}, where there is one",
-                                  curve.keys()[*entry.origin].frame, frame));
-      taken.insert(frame);
-    }
-    std::erase_if(others, [&](const auto& one) { return taken.contains(one.key.frame); });
-    others.insert(others.end(), moved.begin(), moved.end());
-    std::ranges::stable_sort(others, {}, frame_of);
-    return write_curve(curve, wanted, others);
-  });
+  return for_each_keys(
+      move.keys,
+      [&]<int D>(const KeyedCurve<D>& curve, const std::vector<std::size_t>& keys) -> Result<void> {
+        const auto rises = of_components(curve, "rise", move.rise, 0);
+        if (!rises) return fail(rises.error());
+        CurveKeys<D> wanted = curve.curve.keys();
+        for (const std::size_t k : keys) {
+          Key<D>& key = wanted.keys[k];
+          key.frame += move.frames;
+          if (wanted.loop && curve.curve.keys().loop->from == curve.keys()[k].frame)
+            wanted.loop->from = key.frame;
+          for (std::size_t c = 0; c < D; ++c) {
+            const double rise = (*rises)[c];
+            if (rise == 0) continue;
+            key.value[c] = with_digits(key.value[c] + rise, move.digits);
+            if (key.left) (*key.left)[c] = with_digits((*key.left)[c] + rise, move.digits);
+          }
+        }
+        return write_moved(curve, wanted, keys, move.collision);
+      });
+}
+
+Result<void> Editor::operator()(const ScaleKeys& scale) {
+  const auto must = [&](std::string_view what, std::string_view rule, double number) {
+    return draft_.refuse(fmt::format("the {} must be {}, not {}", what, rule, number));
+  };
+  if (!std::isfinite(scale.frame)) return must("frame", "finite", scale.frame);
+  if (!std::isfinite(scale.time_factor) || scale.time_factor <= 0)
+    return must("time factor", "finite and above 0", scale.time_factor);
+  if (!std::isfinite(scale.step) || scale.step < 0)
+    return must("step", "finite and not below 0", scale.step);
+  return for_each_keys(
+      scale.keys,
+      [&]<int D>(const KeyedCurve<D>& curve, const std::vector<std::size_t>& keys) -> Result<void> {
+        const auto value = of_components(curve, "value", scale.value, 0);
+        if (!value) return fail(value.error());
+        const auto factor = of_components(curve, "value factor", scale.value_factor, 1);
+        if (!factor) return fail(factor.error());
+        const Scaling<D> scaling{.frame = scale.frame,
+                                 .time_factor = scale.time_factor,
+                                 .value = *value,
+                                 .value_factor = *factor};
+        if (curve.kind == xml::ValueKind::Boolean && (*factor)[0] != 1)
+          return draft_.refuse(
+              fmt::format("{}: a boolean channel has no multiples", curve.channel));
+        auto wanted = scaled_some(curve.curve.keys(), keys, scaling, scale.step);
+        if (!wanted)
+          return draft_.refuse(fmt::format("{}: {}", curve.channel, wanted.error().message));
+        round_changed(curve.curve.keys(), *wanted, scale.digits);
+        return write_moved(curve, *wanted, keys, scale.collision);
+      });
 }
 
 void Editor::set_side(ElementIndex key, Side side, std::string_view name,

@@ -52,6 +52,7 @@ class Editor {
   Result<void> operator()(const SetKey& set);
   Result<void> operator()(const DeleteKeys& deletion);
   Result<void> operator()(const MoveKeys& move);
+  Result<void> operator()(const ScaleKeys& scale);
   Result<void> operator()(const SetTangent& set);
   Result<void> operator()(const SetHandle& set);
   Result<void> operator()(const SetInterpolation& set);
@@ -135,6 +136,12 @@ class Editor {
   void write_sides(const KeyedCurve<D>& curve, std::size_t key, const Key<D>& wanted);
   template <int D>
   Result<void> set_key(const KeyedCurve<D>& curve, const SetKey& set);
+  template <int D>
+  Result<Value<D>> of_components(const KeyedCurve<D>& curve, std::string_view name,
+                                 const std::vector<double>& numbers, double absent) const;
+  template <int D>
+  Result<void> write_moved(const KeyedCurve<D>& curve, const CurveKeys<D>& wanted,
+                           const std::vector<std::size_t>& moved, Collision collision);
   void set_side(ElementIndex key, Side side, std::string_view name, const std::string& value);
   void set_or_remove(ElementIndex element, std::string_view name, const std::string& value);
   void rewrite(ElementIndex element, std::string_view name, const std::string& value);

@@ -58,6 +58,9 @@ struct Describe {
     return fmt::format("delete {}", keys(of.keys));
   }
   std::string operator()(const MoveKeys& of) const { return fmt::format("move {}", keys(of.keys)); }
+  std::string operator()(const ScaleKeys& of) const {
+    return fmt::format("scale {}", keys(of.keys));
+  }
   std::string operator()(const SetTangent& of) const {
     return fmt::format("set tangent of {}", keys(of.keys));
   }

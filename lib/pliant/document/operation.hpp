@@ -96,6 +96,22 @@ struct MoveKeys {
   double frames = 0;
   std::vector<double> rise = {};  ///< none, one number for all components, or one for each
   Collision collision = Collision::Refuse;
+  int digits = 0;  ///< significant ones to which each number that rises is rounded; 0: all
+};
+
+/// Scales keys in time about `frame` and in value about `value`, with their slopes, handles and
+/// lengths; the parameters of a segment if both of its keys are scaled, and what is outside the
+/// keys, and the loop, if all are. A curve whose keys are all scaled is as before but for the
+/// scale.
+struct ScaleKeys {
+  std::vector<KeysOf> keys;
+  double frame = 0;
+  double time_factor = 1;                 ///< [1], > 0
+  std::vector<double> value = {};         ///< 0, one number for all components, or one for each
+  std::vector<double> value_factor = {};  ///< [1]; 1, one for all components, or one for each
+  double step = 0;  ///< new frames are rounded to multiples of it; 0: they are not
+  Collision collision = Collision::Refuse;
+  int digits = 0;  ///< significant ones to which new values and slopes are rounded; 0: all
 };
 
 /// One or both sides of a key.
@@ -236,12 +252,13 @@ struct Ungroup {
 }  // namespace edit
 
 /// One change of a scene file.
-using Operation = std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
-                               edit::DeleteKeys, edit::MoveKeys, edit::SetTangent, edit::SetHandle,
-                               edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys,
-                               edit::SimplifyKeys, edit::Scale, edit::SetCurve, edit::Splice,
-                               edit::SetPart, edit::Add, edit::Duplicate, edit::Delete,
-                               edit::Rename, edit::Target, edit::Group, edit::Ungroup>;
+using Operation =
+    std::variant<edit::Set, edit::Reset, edit::Animate, edit::Freeze, edit::SetKey,
+                 edit::DeleteKeys, edit::MoveKeys, edit::ScaleKeys, edit::SetTangent,
+                 edit::SetHandle, edit::SetInterpolation, edit::SetExtrapolation, edit::BakeKeys,
+                 edit::SimplifyKeys, edit::Scale, edit::SetCurve, edit::Splice, edit::SetPart,
+                 edit::Add, edit::Duplicate, edit::Delete, edit::Rename, edit::Target, edit::Group,
+                 edit::Ungroup>;
 
 /// What an operation does, for people: `set poke.magnitude`, `move 3 keys of poke.center`.
 std::string described(const Operation& operation);

@@ -41,6 +41,16 @@ inline constexpr Attribute curve_row{
     .need = Need::Required};
 inline constexpr Attribute given_row{.name = "attributes", .meaning = "attributes that are given"};
 
+inline constexpr Attribute collision_row{
+    .name = "collision",
+    .meaning = "what to do with a key at a frame that another comes to",
+    .words = collision_words};
+
+inline constexpr Attribute digits_row{
+    .name = "digits",
+    .meaning = "significant ones to which numbers are rounded; 0: all",
+    .range = not_negative};
+
 constexpr Attribute frame_row(std::string_view name, std::string_view meaning,
                               Need need = Need::Required) {
   return {.name = name, .meaning = meaning, .unit = "frame", .need = need};
@@ -176,10 +186,40 @@ struct Description<edit::MoveKeys> {
     row(Attribute{.name = "rise",
                   .meaning = "higher by so much: a number for all components, or one for each"},
         of.rise...);
-    row(Attribute{.name = "collision",
-                  .meaning = "what to do with a key at a frame that another comes to",
-                  .words = collision_words},
-        of.collision...);
+    row(collision_row, of.collision...);
+    row(digits_row, of.digits...);
+  }
+};
+
+template <>
+struct Description<edit::ScaleKeys> {
+  static constexpr std::string_view name = "scaleKeys";
+  static constexpr std::string_view meaning = "Scales keys in time and in value.";
+
+  template <class Row, class... Of>
+  static void rows(Row&& row, Of&... of) {
+    row(keys_row, of.keys...);
+    row(frame_row("frame", "that stays", Need::Optional), of.frame...);
+    row(
+        Attribute{
+            .name = "timeFactor", .meaning = "of the time to it", .unit = "1", .range = positive},
+        of.time_factor...);
+    row(Attribute{.name = "value",
+                  .meaning = "that stays: a number for all components, or one for each",
+                  .absent = "0"},
+        of.value...);
+    row(Attribute{.name = "valueFactor",
+                  .meaning = "of the distance to it: a number for all components, or one for each",
+                  .unit = "1",
+                  .absent = "1"},
+        of.value_factor...);
+    row(Attribute{.name = "step",
+                  .meaning = "of which new frames are multiples; 0: they are as they come",
+                  .unit = "frame",
+                  .range = not_negative},
+        of.step...);
+    row(collision_row, of.collision...);
+    row(digits_row, of.digits...);
   }
 };
 
@@ -304,10 +344,7 @@ struct Description<edit::Scale> {
         Attribute{
             .name = "factor", .meaning = "of the values", .unit = "1", .need = Need::Required},
         of.factor...);
-    row(Attribute{.name = "digits",
-                  .meaning = "significant ones to which numbers are rounded; 0: all",
-                  .range = not_negative},
-        of.digits...);
+    row(digits_row, of.digits...);
   }
 };
 
