@@ -13,6 +13,7 @@
 
 #include "pliant/core/text.hpp"
 #include "pliant/document/format_scene.hpp"
+#include "pliant/document/properties.hpp"
 #include "pliant/scene/channels.hpp"
 #include "tiny_scene.hpp"
 
@@ -258,6 +259,7 @@ void check_text(const SceneDocument& document) {
   const auto text_of_formatted = to_xml(*read);
   require(text.has_value() == text_of_formatted.has_value());
   if (text) require(*text == *text_of_formatted);
+  require(properties_json(document).has_value());
 }
 
 }  // namespace
