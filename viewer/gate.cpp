@@ -1,8 +1,8 @@
 #include "viewer/gate.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -11,33 +11,26 @@
 namespace pliant::viewer {
 namespace {
 
-std::optional<ViewRoute> route_to(std::string_view place) {
-  constexpr std::array<std::pair<std::string_view, ViewRoute>, 6> routes = {
-      {{"", ViewRoute::Page},
-       {"take", ViewRoute::PicturePage},
-       {"events", ViewRoute::Events},
-       {"bake", ViewRoute::Bake},
-       {"job", ViewRoute::Job},
-       {"picture", ViewRoute::Picture}}};
-  for (const auto& [name, route] : routes) {
-    if (name == place) return route;
-  }
-  return std::nullopt;
-}
+constexpr std::array<Route, 6> routes_of_viewer = {{{""},
+                                                    {.place = "take", .is_from_file = true},
+                                                    {"events"},
+                                                    {"bake"},
+                                                    {"job"},
+                                                    {"picture", "POST"}}};
 
 // Uses the fields in which browsers state the origin of a request; other programs do not send them.
-bool is_from_own_page(const HttpHead& head, std::optional<ViewRoute> route) {
+bool is_from_own_page(const HttpHead& head, const Route* route) {
   const std::string* site = head.find("sec-fetch-site");
   if (site == nullptr || *site == "same-origin") return true;
   // "none": the user typed the address.
-  if (route == ViewRoute::Page) return *site == "none";
+  if (route != nullptr && route->place.empty()) return *site == "none";
   // Our own file redirects to this page, so the browser loads it as a top-level page, not inside
   // another.
   const auto says = [&](std::string_view name, std::string_view value) {
     const std::string* found = head.find(name);
     return found != nullptr && *found == value;
   };
-  return route == ViewRoute::PicturePage && *site == "cross-site" &&
+  return route != nullptr && route->is_from_file && *site == "cross-site" &&
          says("sec-fetch-mode", "navigate") && says("sec-fetch-dest", "document");
 }
 
@@ -68,15 +61,13 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
   return difference == 0;
 }
 
-std::string ViewGate::address() const {
-  return fmt::format("http://127.0.0.1:{}/{}/", port_, token_);
-}
+std::string Gate::address() const { return fmt::format("http://127.0.0.1:{}/{}/", port_, token_); }
 
-bool ViewGate::is_own_host(std::string_view host) const {
+bool Gate::is_own_host(std::string_view host) const {
   return host == fmt::format("127.0.0.1:{}", port_) || host == fmt::format("localhost:{}", port_);
 }
 
-std::variant<ViewRoute, Refusal> ViewGate::judge(const HttpHead& head) const {
+std::variant<std::size_t, Refusal> Gate::judge(const HttpHead& head) const {
   constexpr Refusal forbidden = {403};
   const std::string* host = head.find("host");
   if (host == nullptr || !is_own_host(*host)) return forbidden;
@@ -87,12 +78,25 @@ std::variant<ViewRoute, Refusal> ViewGate::judge(const HttpHead& head) const {
   if (!target.starts_with('/')) return forbidden;
   const std::size_t slash = target.find('/', 1);
   if (!is_same_secret(target.substr(1, slash - 1), token_)) return forbidden;
-  const auto route =
-      slash == std::string_view::npos ? std::nullopt : route_to(target.substr(slash + 1));
+  const std::string_view place = slash == std::string_view::npos ? "/" : target.substr(slash + 1);
+  const auto is_there = [&](const Route& route) {
+    return route.place == (route.has_query ? place.substr(0, place.find('?')) : place);
+  };
+  const auto known = std::ranges::find_if(routes_, is_there);
+  const Route* const route = known == routes_.end() ? nullptr : &*known;
   if (!is_from_own_page(head, route)) return forbidden;
-  if (!route) return Refusal{404};
-  if (head.method != (*route == ViewRoute::Picture ? "POST" : "GET")) return Refusal{405};
-  return *route;
+  if (route == nullptr) return Refusal{404};
+  const auto found = std::ranges::find_if(
+      routes_, [&](const Route& one) { return is_there(one) && head.method == one.method; });
+  if (found == routes_.end()) return Refusal{405};
+  return static_cast<std::size_t>(found - routes_.begin());
 }
+
+std::string_view query_of(std::string_view target) {
+  const std::size_t mark = target.find('?');
+  return mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+}
+
+std::span<const Route> view_routes() { return routes_of_viewer; }
 
 }  // namespace pliant::viewer

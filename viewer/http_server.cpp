@@ -25,6 +25,7 @@ constexpr const char* this_machine = "127.0.0.1";
 }  // namespace
 
 struct HttpServer::State {
+  std::shared_ptr<HttpPost> post = std::make_shared<HttpPost>();
   HttpSessions shared;  // before the context, whose destructor ends the last sessions
   bool is_accepting = false;
   bool is_short_of_descriptors = false;
@@ -35,7 +36,12 @@ struct HttpServer::State {
   asio::steady_timer heartbeat{context};
   std::thread thread = {};
 
-  explicit State(const HttpLimits& limits) : shared{.limits = limits} {}
+  explicit State(const HttpLimits& limits) : shared{.limits = limits, .post = post} {
+    post->open(context);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() { post->close(); }
   void run();
   void accept();
   void accept_after(Clock::duration pause);

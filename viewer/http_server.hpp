@@ -20,7 +20,7 @@ struct HttpLimits {
   std::size_t connections = 64;  ///< of known clients; the longest idle one gives way to another
   std::size_t strangers = 16;    ///< connections of others; the oldest gives way to another
   std::size_t streams = 16;      ///< connections that receive events
-  std::size_t bodies = 1;        ///< being received at the same time
+  std::size_t bodies = 1;        ///< that arrive, or wait for their answer, at the same time
   int requests = 100;            ///< per connection
 
   std::chrono::milliseconds head{2'000};    ///< from its first byte, or the connection, to its last
@@ -40,17 +40,23 @@ struct HttpVerdict {
 };
 
 struct HttpAnswer {
-  int status = 200;  ///< from 400 on: a refusal, which has no body
+  int status =
+      200;  ///< from 400 on without a body: a refusal, after which the connection is closed
   std::string type = {};
   std::shared_ptr<const std::string> body = {};  ///< shared by all connections that send it
   std::string policy = "default-src 'none'";     ///< content security policy, for a page
 };
 
+/// Sends the answer to a request: call it once, in any thread, at once or when there is one. It
+/// does nothing after the client or the server has gone. If it is destroyed without a call, the
+/// answer is 503.
+using HttpReply = std::function<void(HttpAnswer)>;
+
 /// The functions of a service. They are called in the server's thread, one at a time; an exception
 /// is answered by 503 (out of memory) or 500.
 struct HttpService {
   std::function<HttpVerdict(const HttpHead&)> judge;
-  std::function<HttpAnswer(const HttpHead&, std::string body)> answer;
+  std::function<void(const HttpHead&, std::string body, const HttpReply& reply)> answer;
   /// The events that a stream has not received yet, or null. Each stream has its own `seen`, -1 at
   /// first.
   std::function<std::shared_ptr<const std::string>(std::int64_t& seen)> next_event;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include <boost/asio/post.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
@@ -74,6 +75,61 @@ std::variant<HttpHead, int> parse_head(const std::string& text) {
 
 }  // namespace
 
+void HttpPost::open(asio::io_context& context) {
+  const std::lock_guard lock(mutex_);
+  context_ = &context;
+}
+
+void HttpPost::close() {
+  const std::lock_guard lock(mutex_);
+  context_ = nullptr;
+}
+
+void HttpPost::send(std::function<void()> work) {
+  const std::lock_guard lock(mutex_);
+  if (context_ != nullptr) asio::post(*context_, std::move(work));
+}
+
+// The answer to a request, from any thread. Its body counts until then, whether or not the client
+// is still there. A request that nobody will answer any more gets 503: there was no memory for it.
+class DueAnswer {
+ public:
+  DueAnswer(const HttpSessions& server, std::weak_ptr<HttpSession> session, int asked,
+            std::size_t bodies)
+      : post_(server.post),
+        session_(std::move(session)),
+        asked_(asked),
+        bodies_(bodies),
+        all_bodies_(server.bodies) {
+    *all_bodies_ += bodies;
+  }
+  DueAnswer(const DueAnswer&) = delete;
+  DueAnswer& operator=(const DueAnswer&) = delete;
+  ~DueAnswer() {
+    try {
+      if (!is_given_) give({.status = 503});
+    } catch (...) {
+      *all_bodies_ -= bodies_.exchange(0);
+    }
+  }
+
+  void give(HttpAnswer answer) {
+    *all_bodies_ -= bodies_.exchange(0);
+    post_->send([session = session_, asked = asked_, answer = std::move(answer)]() mutable {
+      if (const auto self = session.lock()) self->send(asked, std::move(answer));
+    });
+    is_given_ = true;
+  }
+
+ private:
+  std::shared_ptr<HttpPost> post_;
+  std::weak_ptr<HttpSession> session_;
+  int asked_;
+  std::atomic<bool> is_given_ = false;
+  std::atomic<std::size_t> bodies_;  // that it still counts
+  std::shared_ptr<std::atomic<std::size_t>> all_bodies_;
+};
+
 std::size_t HttpSessions::count(Kind is) const {
   return static_cast<std::size_t>(std::count_if(
       all.begin(), all.end(), [&](const HttpSession* each) { return (each->*is)(); }));
@@ -90,7 +146,8 @@ HttpSession* HttpSessions::first_to_go(Kind is) const {
 HttpSession::HttpSession(HttpSessions& server, tcp::socket socket)
     : server_(server),
       stream_(std::move(socket)),
-      scanner_(server.limits.head_bytes, server.limits.head_lines) {
+      scanner_(server.limits.head_bytes, server.limits.head_lines),
+      awaited_(stream_.get_executor()) {
   server_.all.insert(this);
 }
 
@@ -135,7 +192,10 @@ void HttpSession::read(Next next) {
 }
 
 // See the option in `begin`.
-void HttpSession::close() { stream_.close(); }
+void HttpSession::close() {
+  awaited_.cancel();
+  stream_.close();
+}
 
 // Closes after the client has ended its side; data still buffered for it is delivered.
 void HttpSession::part() {
@@ -195,7 +255,8 @@ void HttpSession::obey() {
   }
   body_.clear();
   if (head_.body_size == 0) return answer();
-  if (server_.count(&HttpSession::is_receiving) >= server_.limits.bodies) return refuse(503);
+  const std::size_t bodies = *server_.bodies + server_.count(&HttpSession::is_receiving);
+  if (bodies >= server_.limits.bodies) return refuse(503);
   is_receiving_ = true;
   stream_.expires_after(server_.limits.body);
   receive_body();
@@ -222,15 +283,30 @@ void HttpSession::receive_body() {
 }
 
 void HttpSession::answer() {
-  answer_ = server_.service.answer(head_, std::exchange(body_, {}));
-  if (answer_.status >= 400) return refuse(answer_.status);
-  ++requests_;
-  if (!answer_.body) answer_.body = std::make_shared<const std::string>();
-  sent_ = 0;
-  const auto size = verdict_.is_stream ? std::nullopt : std::optional(answer_.body->size());
-  answer_head_ = head_text(answer_, size);
-  is_answering_ = true;
-  send_piece();
+  const std::size_t bodies = head_.body_size > 0 ? 1 : 0;
+  const auto due = std::make_shared<DueAnswer>(server_, weak_from_this(), ++asked_, bodies);
+  awaited_.expires_at(Clock::time_point::max());
+  awaited_.async_wait([self = shared_from_this()](Code) {});
+  stream_.expires_never();
+  server_.service.answer(head_, std::exchange(body_, {}),
+                         [due](HttpAnswer answer) { due->give(std::move(answer)); });
+}
+
+// A reply that comes again, or for an earlier request, is not that of the request that waits.
+void HttpSession::send(int asked, HttpAnswer answer) {
+  if (asked_ != asked || is_answering_ || !is_open()) return;
+  attempt([&] {
+    awaited_.cancel();
+    answer_ = std::move(answer);
+    if (answer_.status >= 400 && !answer_.body) return refuse(answer_.status);
+    ++requests_;
+    if (!answer_.body) answer_.body = std::make_shared<const std::string>();
+    sent_ = 0;
+    const auto size = verdict_.is_stream ? std::nullopt : std::optional(answer_.body->size());
+    answer_head_ = head_text(answer_, size);
+    is_answering_ = true;
+    send_piece();
+  });
 }
 
 // Whether this is the last request answered on this connection.
@@ -242,7 +318,7 @@ bool HttpSession::is_last() const {
 std::string HttpSession::head_text(const HttpAnswer& answer,
                                    std::optional<std::size_t> size) const {
   const auto reason = http::obsolete_reason(static_cast<http::status>(answer.status));
-  const bool is_kept = size && answer.status < 400 && !is_last();
+  const bool is_kept = size && (answer.status < 400 || answer.body) && !is_last();
   std::string text = fmt::format("HTTP/1.1 {} {}\r\n", answer.status,
                                  std::string_view(reason.data(), reason.size()));
   if (!answer.type.empty()) text += fmt::format("Content-Type: {}\r\n", answer.type);
@@ -276,6 +352,7 @@ void HttpSession::finish_answer() {
 }
 
 void HttpSession::refuse(int status) {
+  awaited_.cancel();
   answer_head_ = head_text({.status = status}, 0);
   is_answering_ = true;
   is_receiving_ = false;

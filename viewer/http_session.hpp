@@ -1,16 +1,21 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 
 #include "viewer/http_head.hpp"
@@ -19,6 +24,19 @@
 namespace pliant::viewer {
 
 class HttpSession;
+class DueAnswer;
+
+/// Brings work into the server's thread, as long as there is a server. Thread-safe.
+class HttpPost {
+ public:
+  void open(boost::asio::io_context& context);
+  void close();
+  void send(std::function<void()> work);
+
+ private:
+  std::mutex mutex_;
+  boost::asio::io_context* context_ = nullptr;  // null: the server has ended
+};
 
 /// What all connections of a server share. Used only in the server's thread.
 struct HttpSessions {
@@ -26,6 +44,10 @@ struct HttpSessions {
 
   HttpLimits limits;
   HttpService service = {};
+  std::shared_ptr<HttpPost> post = {};
+  /// Bodies that have arrived, and whose requests are not answered.
+  std::shared_ptr<std::atomic<std::size_t>> bodies =
+      std::make_shared<std::atomic<std::size_t>>(std::size_t{0});
   std::set<HttpSession*> all = {};
 
   std::size_t count(Kind is) const;
@@ -60,6 +82,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   Clock::time_point since() const { return since_; }
 
  private:
+  friend class DueAnswer;
   template <class Work>
   void attempt(Work work);
   template <class Next>
@@ -72,6 +95,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void obey();
   void receive_body();
   void answer();
+  void send(int asked, HttpAnswer answer);
   void send_piece();
   void finish_answer();
   void refuse(int status);
@@ -92,6 +116,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   HttpHead head_ = {};
   HttpVerdict verdict_ = {};
   std::string body_ = {};
+  boost::asio::steady_timer awaited_;  // keeps the session while its answer is awaited
+  int asked_ = 0;                      // requests that were given to the service
   HttpAnswer answer_ = {};
   std::string answer_head_ = {};
   std::size_t sent_ = 0;  // of the answer's body

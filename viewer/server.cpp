@@ -43,7 +43,7 @@ Result<void> check_picture(std::string_view bytes, const PictureOrder& order,
 struct ViewServer::State {
   std::string policy;
   Text page;
-  ViewGate gate;
+  Gate gate;
 
   std::mutex mutex;  // guards the members up to `pictures`
   Text packed = std::make_shared<const std::string>();
@@ -58,7 +58,7 @@ struct ViewServer::State {
   std::atomic<bool> is_ending = false;
   HttpServer server;  // last, so that its thread ends before the members it uses
 
-  State(std::string text, ViewGate rules, HttpServer http)
+  State(std::string text, Gate rules, HttpServer http)
       : policy(policy_of(text)),
         page(std::make_shared<const std::string>(std::move(text))),
         gate(std::move(rules)),
@@ -89,7 +89,7 @@ struct ViewServer::State {
   HttpVerdict judge(const HttpHead& head) {
     const auto judged = gate.judge(head);
     if (const auto* refusal = std::get_if<Refusal>(&judged)) return {.status = refusal->status};
-    const auto route = std::get<ViewRoute>(judged);
+    const auto route = static_cast<ViewRoute>(std::get<std::size_t>(judged));
     const std::lock_guard lock(mutex);
     switch (route) {
       case ViewRoute::Page:
@@ -112,7 +112,7 @@ struct ViewServer::State {
   // Requires: `judge` accepted the head.
   HttpAnswer answer(const HttpHead& head, std::string body) {
     const auto judged = gate.judge(head);
-    const auto route = std::get<ViewRoute>(judged);
+    const auto route = static_cast<ViewRoute>(std::get<std::size_t>(judged));
     if (route == ViewRoute::Picture) return take(std::move(body));
     const std::lock_guard lock(mutex);
     switch (route) {
@@ -168,13 +168,13 @@ Result<ViewServer> ViewServer::start(std::string page, int port) {
   if (!token) return fail(token.error());
   auto server = HttpServer::listen(port);
   if (!server) return fail(server.error());
-  ViewGate gate(*std::move(token), server->port());
+  Gate gate(*std::move(token), server->port(), view_routes());
   auto state = std::make_unique<State>(std::move(page), std::move(gate), *std::move(server));
   State& its = *state;
   its.server.serve(
       {.judge = [&its](const HttpHead& head) { return its.judge(head); },
-       .answer = [&its](const HttpHead& head,
-                        std::string body) { return its.answer(head, std::move(body)); },
+       .answer = [&its](const HttpHead& head, std::string body,
+                        const HttpReply& reply) { reply(its.answer(head, std::move(body))); },
        .next_event = [&its](std::int64_t& seen) { return its.next_event(seen); }});
   return ViewServer(std::move(state));
 }

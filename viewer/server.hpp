@@ -24,7 +24,7 @@ struct PictureOrder {
 
 /// Serves the viewer's page to browsers of this machine, and notifies it of changes to the scene.
 /// Requests without the address's token, from another page, or by a name other than this machine's
-/// own are refused; see `ViewGate`.
+/// own are refused; see `Gate`.
 class ViewServer {
  public:
   /// Accepts requests from now on. `port` 0: any free port. Errors: Unwritable if the port is in

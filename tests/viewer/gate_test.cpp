@@ -12,7 +12,7 @@ using namespace pliant::viewer;
 namespace {
 
 const std::string token = "0123456789abcdef0123456789abcdef";
-const ViewGate gate(token, 8080);
+const Gate gate(token, 8080, view_routes());
 
 using Verdict = std::variant<ViewRoute, Refusal>;
 
@@ -23,7 +23,9 @@ Verdict judge(const std::string& target, std::vector<HttpField> fields = {},
   head.target = target;
   head.fields = std::move(fields);
   head.fields.push_back({"host", host});
-  return gate.judge(head);
+  const auto judged = gate.judge(head);
+  if (const auto* refusal = std::get_if<Refusal>(&judged)) return *refusal;
+  return static_cast<ViewRoute>(std::get<std::size_t>(judged));
 }
 
 const Verdict forbidden = Refusal{403};
@@ -57,7 +59,7 @@ TEST_CASE("a request without a host is refused", "[viewer][gate]") {
   HttpHead head;
   head.method = "GET";
   head.target = "/" + token + "/";
-  CHECK(gate.judge(head) == forbidden);
+  CHECK(std::get<Refusal>(gate.judge(head)) == Refusal{403});
 }
 
 TEST_CASE("an origin is that of the host it asks", "[viewer][gate]") {
@@ -82,4 +84,27 @@ TEST_CASE("only the page for pictures is reached from a file, as a page", "[view
     fields[k].value = "iframe";
     CHECK(judge("/" + token + "/take", fields) == forbidden);
   }
+}
+
+TEST_CASE("a place may have several methods, and words behind a ?", "[viewer][gate]") {
+  static constexpr Route routes[] = {
+      {""}, {.place = "motion", .has_query = true}, {"motion", "POST"}, {"bare"}};
+  const Gate own(token, 8080, routes);
+  const auto route_of = [&](const std::string& place, const std::string& method) {
+    HttpHead head;
+    head.method = method;
+    head.target = "/" + token + "/" + place;
+    head.fields.push_back({"host", "127.0.0.1:8080"});
+    return own.judge(head);
+  };
+  using Judged = std::variant<std::size_t, Refusal>;
+  CHECK(route_of("motion", "GET") == Judged(std::size_t{1}));
+  CHECK(route_of("motion?a=1&b", "GET") == Judged(std::size_t{1}));
+  CHECK(route_of("motion", "POST") == Judged(std::size_t{2}));
+  CHECK(route_of("motion", "PUT") == Judged(Refusal{405}));
+  CHECK(route_of("motion?a", "POST") == Judged(Refusal{405}));
+  CHECK(route_of("bare", "GET") == Judged(std::size_t{3}));
+  CHECK(route_of("bare?", "GET") == Judged(Refusal{404}));
+  CHECK(query_of("/x/motion?a=1?b") == "a=1?b");
+  CHECK(query_of("/x/motion").empty());
 }

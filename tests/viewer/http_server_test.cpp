@@ -1,8 +1,12 @@
 #include "viewer/http_server.hpp"
 
+#include <condition_variable>
+#include <map>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -79,10 +83,9 @@ TEST_CASE("what a service throws is answered, and the server goes on", "[viewer]
                        return HttpVerdict{.is_stream = head.target.starts_with("/event")};
                      },
                  .answer =
-                     [](const HttpHead& head, const std::string&) {
+                     [](const HttpHead& head, const std::string&, const HttpReply& reply) {
                        if (head.target.starts_with("/answer")) fail_as(std::string(head.target));
-                       return HttpAnswer{.type = "text/plain",
-                                         .body = std::make_shared<std::string>("well")};
+                       reply({.type = "text/plain", .body = std::make_shared<std::string>("well")});
                      },
                  .next_event = [](std::int64_t&) -> std::shared_ptr<const std::string> {
                    fail_as("/event");
@@ -113,9 +116,8 @@ TEST_CASE("strangers keep nobody out, and give way in the order of their age",
                        return HttpVerdict{.status = head.target == "/known" ? 200 : 403};
                      },
                  .answer =
-                     [](const HttpHead&, const std::string&) {
-                       return HttpAnswer{.type = "text/plain",
-                                         .body = std::make_shared<std::string>("well")};
+                     [](const HttpHead&, const std::string&, const HttpReply& reply) {
+                       reply({.type = "text/plain", .body = std::make_shared<std::string>("well")});
                      },
                  .next_event = [](std::int64_t&) { return nullptr; }});
   std::vector<Client> strangers;
@@ -130,4 +132,137 @@ TEST_CASE("strangers keep nobody out, and give way in the order of their age",
   // The last but one of the four may have given way to this answer.
   for (std::size_t k = 0; k + 4 < strangers.size(); ++k) CHECK(strangers[k].receive().empty());
   CHECK_THAT(answer_to(*server, "/other"), StartsWith("HTTP/1.1 403 "));
+}
+
+namespace {
+
+HttpAnswer text(const std::string& body, int status = 200) {
+  return {
+      .status = status, .type = "text/plain", .body = std::make_shared<const std::string>(body)};
+}
+
+HttpVerdict accept_all(const HttpHead&) { return {}; }
+
+}  // namespace
+
+TEST_CASE("an answer may come later, in another thread and order", "[viewer][http][threads]") {
+  std::mutex mutex;
+  std::map<std::string, HttpReply, std::less<>> waiting;
+  std::condition_variable changed;
+  auto server = HttpServer::listen(0);
+  REQUIRE(server);
+  server->serve({.judge = &accept_all,
+                 .answer =
+                     [&](const HttpHead& head, const std::string&, const HttpReply& reply) {
+                       const std::lock_guard lock(mutex);
+                       waiting[head.target] = reply;
+                       changed.notify_all();
+                     },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  std::vector<Client> clients;
+  for (int k = 0; k < 5; ++k) {
+    clients.emplace_back(*server);
+    clients.back().send(request_for("/" + std::to_string(k)));
+  }
+  {
+    const Client gone(*server);
+    gone.send(request_for("/gone"));
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return waiting.size() == 6; });
+  }
+  for (int k = 5; k-- > 0;) {
+    std::thread([&, k] {
+      const HttpReply& reply = waiting["/" + std::to_string(k)];
+      reply(text("answer " + std::to_string(k)));
+      reply(text("once more"));
+    }).join();
+    const std::string answer = clients[static_cast<std::size_t>(k)].receive();
+    CHECK_THAT(answer, Catch::Matchers::EndsWith("answer " + std::to_string(k)));
+  }
+  waiting["/gone"](text("nobody listens"));
+  { const HttpServer ended = *std::move(server); }
+  waiting["/0"](text("there is no server"));
+}
+
+TEST_CASE("a refusal with a reason keeps the connection", "[viewer][http][threads]") {
+  auto server = HttpServer::listen(0);
+  REQUIRE(server);
+  server->serve({.judge = &accept_all,
+                 .answer =
+                     [&](const HttpHead& head, const std::string&, const HttpReply& reply) {
+                       reply(head.target == "/bare" ? HttpAnswer{.status = 409}
+                                                    : text("because", 409));
+                     },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  const Client client(*server);
+  for (const char* path : {"/told", "/told", "/bare", "/told"})
+    client.send("GET " + std::string(path) + " HTTP/1.1\r\nHost: a\r\n\r\n");
+  const std::string answers = client.receive();
+  std::size_t count = 0;
+  for (std::size_t at = 0; (at = answers.find("HTTP/1.1 409", at)) != std::string::npos; ++at)
+    ++count;
+  CHECK(count == 3);
+  CHECK(answers.find("because") != answers.rfind("because"));
+}
+
+TEST_CASE("a request that nobody will answer is answered by 503", "[viewer][http][threads]") {
+  auto server = HttpServer::listen(0);
+  REQUIRE(server);
+  std::vector<std::thread> threads;
+  server->serve({.judge = &accept_all,
+                 .answer =
+                     [&](const HttpHead& head, const std::string&, const HttpReply& reply) {
+                       if (head.target == "/here") return;
+                       threads.emplace_back([reply] {});
+                     },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  for (const char* path : {"/here", "/elsewhere"})
+    CHECK_THAT(answer_to(*server, path), StartsWith("HTTP/1.1 503 "));
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST_CASE("bodies are counted until their answer, also of clients that have gone",
+          "[viewer][http][threads]") {
+  std::mutex mutex;
+  std::vector<HttpReply> waiting;
+  std::condition_variable changed;
+  auto server = HttpServer::listen(0, {.bodies = 3});
+  REQUIRE(server);
+  server->serve({.judge = [](const HttpHead&) { return HttpVerdict{.most_body = 4}; },
+                 .answer =
+                     [&](const HttpHead& head, const std::string&, const HttpReply& reply) {
+                       if (head.body_size == 0) return reply(text("well"));
+                       const std::lock_guard lock(mutex);
+                       waiting.push_back(reply);
+                       changed.notify_all();
+                     },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  const auto post = [&] {
+    Client client(*server);
+    client.send("POST / HTTP/1.1\r\nHost: a\r\nConnection: close\r\nContent-Length: 4\r\n\r\nbody");
+    return client;
+  };
+  const auto wait_for = [&](std::size_t count) {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [&] { return waiting.size() == count; });
+  };
+  const Client first = post();
+  wait_for(1);
+  post();  // and goes
+  wait_for(2);
+  const Client third = post();
+  wait_for(3);
+  CHECK_THAT(post().receive(), StartsWith("HTTP/1.1 503 "));
+  CHECK_THAT(answer_to(*server, "/"), StartsWith("HTTP/1.1 200 "));
+  // The first, or that of the client that has gone.
+  const auto [which, is_answered] = GENERATE(std::pair(0U, true), std::pair(0U, false),
+                                             std::pair(1U, true), std::pair(1U, false));
+  {
+    const std::lock_guard lock(mutex);
+    if (is_answered) waiting[which](text("late"));
+    if (!is_answered) waiting[which] = {};
+  }
+  const Client fourth = post();
+  wait_for(4);
+  CHECK_THAT(post().receive(), StartsWith("HTTP/1.1 503 "));
 }
