@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "pliant/core/stoppable_sort.hpp"
 #include "pliant/feedback/surface_lines.hpp"
 #include "viewer/arrays.hpp"
 #include "viewer/channels.hpp"
@@ -19,46 +18,13 @@
 #include "viewer/mesh_order.hpp"
 #include "viewer/motion.hpp"
 #include "viewer/page.hpp"
+#include "viewer/shape.hpp"
 
 namespace pliant::viewer {
 namespace {
 
 // The longest text in bytes that browsers accept in one piece.
 constexpr std::size_t longest_page = 500'000'000;
-
-// Both ends of each edge of the faces, each edge once. Unfinished if it is stopped.
-std::vector<std::uint32_t> edge_vertices(const Mesh& mesh, StopPoll& poll) {
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-  std::size_t first = 0;
-  for (const int size : mesh.face_sizes) {
-    if (poll.after(4 * static_cast<std::size_t>(size))) return {};
-    for (int k = 0; k < size; ++k) {
-      const auto [low, high] = std::minmax(mesh.corner_vertices[first + k],
-                                           mesh.corner_vertices[first + (k + 1) % size]);
-      edges.emplace_back(low, high);
-    }
-    first += size;
-  }
-  if (!sort_unless_stopped(edges, poll)) return {};
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  std::vector<std::uint32_t> vertices;
-  for (const auto& [low, high] : edges) vertices.insert(vertices.end(), {low, high});
-  return vertices;
-}
-
-// (u,v) of each vertex, from its first corner; 0 if it has none.
-std::vector<float> vertex_uvs(const Mesh& mesh) {
-  std::vector<float> uvs(2 * static_cast<std::size_t>(mesh.vertex_count()), 0);
-  for (std::size_t corner = mesh.corner_vertices.size(); corner-- > 0;) {
-    const int uv = mesh.corner_uvs[corner];
-    if (uv < 0) continue;
-    for (std::size_t k = 0; k < 2; ++k) {
-      uvs[2 * static_cast<std::size_t>(mesh.corner_vertices[corner]) + k] =
-          static_cast<float>(mesh.uvs[uv][k]);
-    }
-  }
-  return uvs;
-}
 
 // One surface during the run.
 class SurfaceView {
@@ -93,15 +59,7 @@ class SurfaceView {
   // Vertices of the nodes that colliders push at a frame.
   void touch(const std::vector<ContactFacts>& contacts) {
     if (!contacts.empty() && node_vertices_.empty()) node_vertices_ = node_vertices(shape_);
-    std::vector<std::uint32_t> vertices;
-    for (const ContactFacts& facts : contacts) {
-      for (const int node : facts.nodes) {
-        const int vertex = node_vertices_[static_cast<std::size_t>(node)];
-        if (vertex >= 0) vertices.push_back(static_cast<std::uint32_t>(vertex));
-      }
-    }
-    std::ranges::sort(vertices);
-    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    const std::vector<std::uint32_t> vertices = touching_vertices(contacts, node_vertices_);
     std::uint32_t before = 0;
     for (const std::uint32_t vertex : vertices) {
       touching_steps_.push_back(vertex - before);
@@ -115,48 +73,34 @@ class SurfaceView {
 
   /// Errors: Interrupted.
   Result<Json> finish(Arrays& arrays, const StopRequest& should_stop) const {
-    const Mesh& mesh = shape_.mesh;
-    const Vector3d low = mesh.positions.colwise().minCoeff();
-    const Vector3d high = mesh.positions.colwise().maxCoeff();
-    const Vector3d origin = 0.5 * low + 0.5 * high;
     const auto motion = motion_.pack(should_stop);
     if (!motion) return fail(motion.error());
-    StopPoll poll(should_stop);
-    const std::vector<std::uint32_t> edges = edge_vertices(mesh, poll);
-    if (poll.after(0)) return interrupted();
+    const auto shape = shape_json(shape_, arrays, should_stop);
+    if (!shape) return fail(shape.error());
+    const Mesh& mesh = shape_.mesh;
+    const auto size = mesh.positions.colwise().maxCoeff() - mesh.positions.colwise().minCoeff();
     // Half a step, plus the rounding of the rest position to float.
-    const double error = 0.5 * motion->step + (high - low).maxCoeff() * 0x1p-25;
-    Json json = {
-        {"name", shape_.name},
-        {"enabled", surface_.enabled},
-        {"vertices", mesh.vertex_count()},
-        {"columns", shape_.grid ? shape_.grid->columns : static_cast<int>(shape_.rest.rows())},
-        {"rows", shape_.grid ? shape_.grid->rows : 1},
-        {"origin", to_json(origin)},
-        {"low", to_json(low_)},
-        {"high", to_json(high_)},
-        {"peakDisplacement", peak_displacement_},
-        {"peakSpeed", peak_speed_},
-        {"step", motion->step},
-        {"error", error},
-        {"transforms", same_or_all()},
-        {"rest", arrays.add(relative_rest(origin))},
-        {"uvs", arrays.add(vertex_uvs(mesh))},
-        {"nodes", arrays.add(shape_.vertex_nodes)},
-        {"triangles", arrays.add(triangle_vertices(mesh))},
-        {"edges", arrays.add(edges)},
-        {"predictors", arrays.add(motion->predictors)},
-        {"lowBytes", arrays.add(motion->low)},
-        {"highBytes", arrays.add(motion->high)},
-        {"marks", marks_.changes()}};
-    if (shape_.grid && !shape_.grid->is_open()) json["wrap"] = wrap_word(*shape_.grid);
+    const double error = 0.5 * motion->step + size.maxCoeff() * 0x1p-25;
+    Json json = {{"name", shape_.name},
+                 {"enabled", surface_.enabled},
+                 {"low", to_json(low_)},
+                 {"high", to_json(high_)},
+                 {"peakDisplacement", peak_displacement_},
+                 {"peakSpeed", peak_speed_},
+                 {"step", motion->step},
+                 {"error", error},
+                 {"transforms", same_or_all()},
+                 {"predictors", arrays.add(motion->predictors)},
+                 {"lowBytes", arrays.add(motion->low)},
+                 {"highBytes", arrays.add(motion->high)},
+                 {"marks", marks_.changes()}};
+    json.update(*shape);
     if (rest_motion_) {
       const auto rest = rest_motion_->pack(should_stop);
       if (!rest) return fail(rest.error());
       json["restMotion"] = to_json(*rest, arrays);
     }
     if (!marks_.lines().is_empty()) json["lines"] = marks_.lines().arrays(arrays);
-    if (shape_.held) json["pins"] = arrays.add(held_vertices());
     if (!touching_steps_.empty()) {
       json["touching"] = {{"counts", arrays.add(touching_counts_)},
                           {"steps", arrays.add(touching_steps_)}};
@@ -165,27 +109,6 @@ class SurfaceView {
   }
 
  private:
-  std::vector<float> relative_rest(const Vector3d& origin) const {
-    std::vector<float> numbers;
-    for (Eigen::Index row = 0; row < shape_.mesh.positions.rows(); ++row) {
-      for (int k = 0; k < 3; ++k) {
-        numbers.push_back(static_cast<float>(shape_.mesh.positions(row, k) - origin[k]));
-      }
-    }
-    return numbers;
-  }
-
-  // A vertex of each held node.
-  std::vector<std::uint32_t> held_vertices() const {
-    std::vector<std::uint32_t> held;
-    const std::vector<int> vertices = node_vertices(shape_);
-    for (std::size_t node = 0; node < vertices.size(); ++node) {
-      if ((*shape_.held)[node] != 0 && vertices[node] >= 0)
-        held.push_back(static_cast<std::uint32_t>(vertices[node]));
-    }
-    return held;
-  }
-
   Json same_or_all() const {
     const bool is_still =
         std::all_of(transforms_.begin(), transforms_.end(),
@@ -209,25 +132,6 @@ class SurfaceView {
   Vector3d high_ = -low_;
   Field before_;  // world
 };
-
-Json messages_of(const Simulation& simulation) {
-  const Scene& scene = simulation.scene();
-  Json messages = Json::array();
-  const auto add = [&](std::string_view kind, const ScenePlace& place, const std::string& text) {
-    Json message = {{"kind", kind}, {"line", place.line}, {"text", text}};
-    if (place.file != scene.origin.file)
-      message["file"] = std::filesystem::path(place.file).filename().string();
-    messages.push_back(std::move(message));
-  };
-  for (const SceneNote& note : scene.notes) {
-    add("note", {note, note.file}, note.message);
-  }
-  for (const Warning& warning : simulation.warnings()) {
-    const ScenePlace place = place_of(warning, scene.origin);
-    add("warning", place, place.told(warning.message()));
-  }
-  return messages;
-}
 
 Result<void> check_memory(const Simulation& simulation, const FrameSpan& frames,
                           const ViewLimits& limits) {

@@ -75,29 +75,37 @@ Json plane_transforms(const Collider& collider, const FrameSpan& frames) {
 
 }  // namespace
 
+Result<Json> view_collider(const Collider& collider,
+                           const std::shared_ptr<const ColliderMesh>& mesh, const FrameSpan& frames,
+                           Arrays& arrays, const StopRequest& should_stop) {
+  Json json = {
+      {"name", collider.name}, {"kind", shape_of(collider)}, {"targets", collider.targets}};
+  Json values = Json::object();
+  for_each_value(collider, [&](std::string_view name, const ValueAt& value_at) {
+    (name == "enabled" ? json : values)[std::string(name)] = track(frames, value_at);
+  });
+  json["values"] = std::move(values);
+  const auto drawn = DrawnCollider::make(collider, frames.first, mesh);
+  if (!drawn) return fail(drawn.error());
+  if (*drawn) {
+    if (auto added = add_mesh(**drawn, frames, arrays, should_stop, json); !added)
+      return fail(added.error());
+  } else {
+    json["transforms"] = plane_transforms(collider, frames);
+  }
+  return json;
+}
+
 Result<Json> view_colliders(const Simulation& simulation, const FrameSpan& frames, Arrays& arrays,
                             const StopRequest& should_stop) {
   Json colliders = Json::array();
   const auto meshes = simulation.collider_meshes();
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    const Collider& collider = simulation.scene().colliders[k];
     if (is_stopped(should_stop)) return interrupted();
-    Json json = {
-        {"name", collider.name}, {"kind", shape_of(collider)}, {"targets", collider.targets}};
-    Json values = Json::object();
-    for_each_value(collider, [&](std::string_view name, const ValueAt& value_at) {
-      (name == "enabled" ? json : values)[std::string(name)] = track(frames, value_at);
-    });
-    json["values"] = std::move(values);
-    const auto mesh = DrawnCollider::make(collider, frames.first, meshes[k]);
-    if (!mesh) return fail(mesh.error());
-    if (*mesh) {
-      if (auto added = add_mesh(**mesh, frames, arrays, should_stop, json); !added)
-        return fail(added.error());
-    } else {
-      json["transforms"] = plane_transforms(collider, frames);
-    }
-    colliders.push_back(std::move(json));
+    auto collider =
+        view_collider(simulation.scene().colliders[k], meshes[k], frames, arrays, should_stop);
+    if (!collider) return collider;
+    colliders.push_back(*std::move(collider));
   }
   return colliders;
 }

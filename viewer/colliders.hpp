@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include "pliant/core/result.hpp"
 #include "pliant/core/stop_request.hpp"
@@ -16,6 +17,11 @@ namespace pliant::viewer {
 /// single precision; Interrupted.
 Result<Json> view_colliders(const Simulation& simulation, const FrameSpan& frames, Arrays& arrays,
                             const StopRequest& should_stop = {});
+
+/// One of them; `mesh`: as in `Simulation::collider_meshes`.
+Result<Json> view_collider(const Collider& collider,
+                           const std::shared_ptr<const ColliderMesh>& mesh, const FrameSpan& frames,
+                           Arrays& arrays, const StopRequest& should_stop = {});
 
 /// What colliders need of a page.
 struct ColliderSize {
