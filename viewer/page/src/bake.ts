@@ -112,8 +112,16 @@ export interface ColliderHead {
 export interface Channel {
   path: string;
   components: number;
-  keys: { at: number[]; next: string }[];
-  handles: { key: number[]; tip: number[] }[];
+  /** Its values are 0 for false and 1 for true. */
+  isSwitch?: true;
+  /** In the words of the format; a tangent that is given by frames and values is `handle`. */
+  keys: { at: number[]; next: string; in: string; out: string }[];
+  /** Outside the keys, as an <animate> says it. */
+  before: string;
+  after: string;
+  loop?: { from: number; to: number; before: number; after: number; offset: number[] };
+  /** Of Bézier segments. */
+  handles: { key: number[]; tip: number[]; side: "in" | "out" }[];
   points: number[][];
 }
 
