@@ -1,5 +1,6 @@
 // Builds a page as one file with its scripts and styles inside, so that it opens from the file
-// system. Its policy allows only these. `--mode sweep` builds sweep.html, otherwise index.html.
+// system. Its policy allows only these. `--mode sweep` builds sweep.html, otherwise index.html, which `--mode edit` makes
+// the page of `pliant edit`.
 
 import { createHash } from "node:crypto";
 import { readFileSync } from "node:fs";
@@ -35,13 +36,21 @@ function policy(scripts: string[], styles: string[]): string {
   return `<meta http-equiv="Content-Security-Policy" content="${rules.join("; ")}">`;
 }
 
-// What both pages have: `<!-- include FILE -->`, alone on its line, becomes the text of the file.
-function included(): Plugin {
-  const line = /^ *<!-- include (\S+) -->\n/gm;
+// What several pages have: `<!-- include FILE -->`, alone on its line, becomes the text of the file; `<!-- FILE in MODE -->`
+// in that mode only.
+function included(mode: string): Plugin {
+  const line = /^ *<!-- (?:include (\S+)|(\S+) in (\S+)) -->\n/gm;
   const textOf = (file: string) => readFileSync(new URL(file, import.meta.url), "utf8");
+  const main = mode === "edit" ? "/src/edit/main.ts" : "/src/main.ts";
   return {
     name: "included",
-    transformIndexHtml: { order: "pre", handler: (html) => html.replace(line, (_, file: string) => textOf(file)) },
+    transformIndexHtml: {
+      order: "pre",
+      handler: (html) =>
+        html
+          .replace(line, (_, file?: string, part?: string, only?: string) => (file ? textOf(file) : only === mode ? textOf(part!) : ""))
+          .replace("/src/main.ts", main),
+    },
   };
 }
 
@@ -83,7 +92,7 @@ function inlined(): Plugin {
 
 export default defineConfig(({ mode }) => ({
   base: "./",
-  plugins: [included(), inlined()],
+  plugins: [included(mode), inlined()],
   build: {
     target: "es2022", modulePreload: false, assetsInlineLimit: 0, reportCompressedSize: false, emptyOutDir: false,
     rollupOptions: { input: mode === "sweep" ? "sweep.html" : "index.html" },

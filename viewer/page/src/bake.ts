@@ -31,7 +31,8 @@ export interface MotionHead {
   highBytes: ArrayPlace;
 }
 
-interface SurfaceHead extends MotionHead {
+/** What is known of a surface besides its arrays. */
+export interface SurfaceFacts {
   name: string;
   enabled: boolean;
   vertices: number;
@@ -46,6 +47,12 @@ interface SurfaceHead extends MotionHead {
   high: Vector;
   error: number;
   transforms: Track<number[]>;
+  /** Of the shape at rest, if it is animated. */
+  restMotion?: MotionHead;
+  marks: Marks[];
+}
+
+interface SurfaceHead extends SurfaceFacts, MotionHead {
   rest: ArrayPlace;
   uvs: ArrayPlace;
   nodes: ArrayPlace;
@@ -54,9 +61,6 @@ interface SurfaceHead extends MotionHead {
   pins?: ArrayPlace;
   /** How many vertices colliders push at each frame, and the steps to each from the one before, or from 0. */
   touching?: { counts: ArrayPlace; steps: ArrayPlace };
-  /** Of the shape at rest, if it is animated. */
-  restMotion?: MotionHead;
-  marks: Marks[];
   lines?: { counts: ArrayPlace; sources: ArrayPlace; shares: ArrayPlace; segments: ArrayPlace };
 }
 
@@ -132,8 +136,8 @@ export interface Message {
   file?: string;
 }
 
-interface Head {
-  version: number;
+/** What is known of a scene besides its arrays. */
+export interface SceneFacts {
   scene: string;
   fps: number;
   first: number;
@@ -142,11 +146,15 @@ interface Head {
   sceneFrames?: [number, number];
   /** The largest displacement of all surfaces at each frame, for the captions of pictures. */
   displaced?: number[];
-  surfaces: SurfaceHead[];
   forces: Force[];
   colliders?: ColliderHead[];
   channels: Channel[];
   messages: Message[];
+}
+
+interface Head extends SceneFacts {
+  version: number;
+  surfaces: SurfaceHead[];
 }
 
 export function at<T>(track: Track<T>, index: number): T {
@@ -195,6 +203,7 @@ const nothing = new Uint32Array();
 
 /** One surface over all frames. Object space, relative to `origin`. */
 export class BakedSurface {
+  readonly head: SurfaceFacts;
   readonly rest: Float32Array;
   readonly uvs: Float32Array;
   readonly triangles: Uint32Array;
@@ -214,10 +223,11 @@ export class BakedSurface {
   private readonly restMotion?: Motion;
 
   constructor(
-    readonly head: SurfaceHead,
+    head: SurfaceHead,
     arrays: ArrayBuffer,
     start: number,
   ) {
+    this.head = head;
     const floats = (place: ArrayPlace) => new Float32Array(arrays, start + place.begin, place.count);
     const whole = (place: ArrayPlace) => new Uint32Array(arrays, start + place.begin, place.count);
     const signed = (place: ArrayPlace) => new Int32Array(arrays, start + place.begin, place.count);
@@ -373,8 +383,8 @@ export function unfolded(predictors: Uint8Array, low: Uint8Array, high: Uint8Arr
   return steps;
 }
 
-/** A scene over its frames. */
-export class Bake {
+/** All frames of a scene, packed. */
+export class Bake implements ShownBake {
   readonly head: Head;
   readonly surfaces: BakedSurface[];
   readonly colliders: BakedCollider[];
@@ -389,6 +399,17 @@ export class Bake {
   get frameCount(): number {
     return this.head.last - this.head.first + 1;
   }
+}
+
+/** A surface over its frames, wherever they come from. */
+export type ShownSurface = Pick<BakedSurface, keyof BakedSurface>;
+
+/** A scene over its frames. */
+export interface ShownBake {
+  head: SceneFacts & { surfaces: SurfaceFacts[] };
+  surfaces: ShownSurface[];
+  colliders: BakedCollider[];
+  frameCount: number;
 }
 
 /** The head of what a command packed, and where its arrays begin: the length of the head, the head, the arrays. */

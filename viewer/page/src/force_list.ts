@@ -31,7 +31,10 @@ export class ForceList {
   }
 
   load(forces: Force[], colliders: Row[]): void {
+    const rowsOf = (rows: Row[]) => JSON.stringify(rows.map(({ name, kind, group }) => [name, kind, group]));
+    const before = rowsOf(this.forces);
     this.forces = [...ordered(forces), ...colliders];
+    if (rowsOf(this.forces) === before && this.forces.length > 0) return this.update();
     this.list.replaceChildren(...this.forces.map((force) => this.row(force)));
     this.list.parentElement!.hidden = this.forces.length === 0;
     this.showAll.textContent = colliders.length > 0 ? "Show all forces and colliders" : "Show all forces";

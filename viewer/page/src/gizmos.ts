@@ -110,6 +110,8 @@ interface Inks {
 /** A vector with a head; the shaft is a line. */
 class Arrow {
   readonly group = new THREE.Group();
+  readonly from = new THREE.Vector3();
+  readonly along = new THREE.Vector3();
   private readonly shaft: Segments;
   private readonly tip: THREE.Mesh;
 
@@ -123,6 +125,8 @@ class Arrow {
   point(from: THREE.Vector3, along: THREE.Vector3, size: number): void {
     const length = along.length();
     this.group.visible = length > 0;
+    this.from.copy(from);
+    this.along.copy(along);
     if (length === 0) return;
     const turn = new THREE.Quaternion().setFromUnitVectors(up, along.clone().divideScalar(length));
     const headLength = Math.min(size, 0.45 * length);
@@ -138,6 +142,22 @@ class Arrow {
 /** Where arrows along the normals stand, up to `count`, on the surfaces that a force targets. */
 export type FeetIn = (force: Force, center: THREE.Vector3, radius: number, count: number) => Foot[];
 
+/** What is drawn of a force at the frame shown, world space. */
+export interface Drawn {
+  name: string;
+  isShown: boolean;
+  center: THREE.Vector3;
+  /** Length of the course and of the longest vector. */
+  length: number;
+  /** The largest magnitude at any frame, which has a vector of that length. */
+  strongest: number;
+  /** From where vectors start, and along them; of a magnitude of 0 none. */
+  vectors: { from: THREE.Vector3; along: THREE.Vector3 }[];
+  circles: Segments[];
+  /** Of those behind everything. */
+  isVast: (circles: Segments) => boolean;
+}
+
 /** One force, or a group. */
 class Gizmo {
   readonly group = new THREE.Group();
@@ -149,6 +169,7 @@ class Gizmo {
   private readonly course: Segments;
   private readonly arrows: Arrow[] = [];
   private readonly strongest: number;
+  private length = 0;
 
   constructor(
     private readonly parameters: Force,
@@ -195,6 +216,24 @@ class Gizmo {
     this.solid.color.set(this.parameters.kind === "group" ? palette.deformation : palette.force);
   }
 
+  get name(): string {
+    return this.parameters.name;
+  }
+
+  get drawn(): Drawn {
+    const { strongest, length } = this;
+    return {
+      name: this.name,
+      isShown: this.group.visible,
+      center: this.middle.position.clone(),
+      length,
+      strongest,
+      vectors: this.arrows.filter(({ group }) => group.visible).map(({ from, along }) => ({ from, along })),
+      circles: [...this.deformation, ...this.force].filter((each) => each.visible),
+      isVast: (circles) => circles.renderOrder < 0,
+    };
+  }
+
   /** The label beside its middle; null: the force is not shown. */
   label(index: number): Label | null {
     if (!this.group.visible) return null;
@@ -211,7 +250,6 @@ class Gizmo {
   show(index: number, share: number, isShown: boolean, middle: THREE.Vector3, push: Vector | undefined, feetIn: FeetIn): void {
     const force = this.parameters;
     this.group.visible = isShown && at(force.enabled, index);
-    if (!this.group.visible) return;
     const magnitude = force.magnitude ? between(force.magnitude, index, share) : 0;
     // A force without a magnitude still selects its region, but stays in the background.
     const strength = magnitude === 0 && force.kind !== "group" ? 0.3 : 1;
@@ -221,13 +259,15 @@ class Gizmo {
     const deformationRadius = !isEverywhere && force.deformationRadius ? between(force.deformationRadius, index, share) : 0;
     const forceRadius = !isEverywhere && force.forceRadius ? between(force.forceRadius, index, share) : 0;
     const size = Math.min(deformationRadius || forceRadius || Infinity, longestVector * this.reach);
+    this.length = 1.15 * size;
     const length = this.strongest > 0 ? (1.15 * size * magnitude) / this.strongest : 0;
     const vectorOf = (track: Vector[] | undefined) => (track ? toVector(vectorBetween(track, index, share)) : new THREE.Vector3());
 
     const ends = force.from && force.to ? [vectorOf(force.from), vectorOf(force.to)] : [force.center ? vectorOf(force.center) : middle.clone()];
-    this.placeVolumes(ends, deformationRadius, forceRadius, force.axis && vectorOf(force.axis));
     const center = ends.length === 2 ? ends[0].clone().lerp(ends[1], 0.5) : ends[0];
     this.middle.position.copy(center);
+    if (!this.group.visible) return;
+    this.placeVolumes(ends, deformationRadius, forceRadius, force.axis && vectorOf(force.axis));
     this.middle.scale.setScalar(0.035 * size);
 
     const headSize = 0.16 * size;
@@ -235,7 +275,7 @@ class Gizmo {
     if (direction.lengthSq() > 0) direction.normalize();
     this.course.visible = false;
     if (force.kind === "point" || force.kind === "uniform" || force.kind === "inertia" || force.direction) {
-      this.showCourse(center, direction, 1.15 * size);
+      this.showCourse(center, direction, this.length);
       this.arrows[0].point(center, direction.multiplyScalar(length), headSize);
       for (const arrow of this.arrows.slice(1)) arrow.group.visible = false;
     } else if (force.kind === "radial") {
@@ -344,6 +384,14 @@ export class Gizmos {
 
   show(index: number, share: number, isShown: boolean[], pushes: Map<number, Vector>, feetIn: FeetIn): void {
     this.gizmos.forEach((gizmo, k) => gizmo.show(index, share, isShown[k], this.middle, pushes.get(k), feetIn));
+  }
+
+  get drawn(): Drawn[] {
+    return this.gizmos.map((gizmo) => gizmo.drawn);
+  }
+
+  drawnOf(name: string): Drawn | undefined {
+    return this.gizmos.find((gizmo) => gizmo.name === name)?.drawn;
   }
 
   /** The labels of the forces that are shown. */

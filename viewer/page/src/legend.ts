@@ -1,6 +1,6 @@
 // The meaning of the colours: the same text and drawing for the page and for pictures.
 
-import type { Bake } from "./bake";
+import type { ShownBake } from "./bake";
 import type { Area } from "./labels";
 import { numberText } from "./curve_plot";
 import { make } from "./element";
@@ -38,7 +38,7 @@ export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
   add((display.hasGizmos || display.hasBoxes) && forces.length > 0, palette.force, "is pushed");
   add(display.hasRegions && bake.head.surfaces.some((surface) => surface.marks.length > 0), palette.rim, "is solved");
   add(display.hasGizmos && bake.surfaces.some((surface) => surface.pins.length > 0), palette.pin, "is held");
-  add(display.hasColliders && bake.surfaces.some((surface) => surface.mostTouching > 0), palette.touch, "touches");
+  add(display.hasColliders && bake.colliders.length > 0 && bake.surfaces.some((surface) => surface.mostTouching > 0), palette.touch, "touches");
   const { colour } = display;
   if (colour === "plain") return inks.length > 0 ? { scale: null, inks } : null;
   const ramp = ramps[colour];
@@ -48,7 +48,7 @@ export function legendOf(viewer: Viewer, palette: Palette): Legend | null {
 }
 
 /** The frames of a page that has only some of its scene. */
-function framesOf({ head: { first, last, sceneFrames } }: Bake): string {
+function framesOf({ head: { first, last, sceneFrames } }: ShownBake): string {
   if (!sceneFrames || (first === sceneFrames[0] && last === sceneFrames[1])) return "";
   return first === last ? `at frame ${first}` : `in frames ${first} to ${last}`;
 }

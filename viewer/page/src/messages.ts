@@ -3,7 +3,13 @@
 import type { Message } from "./bake";
 import { make } from "./element";
 
+const shown = new WeakMap<HTMLElement, string>();
+
+/** What is shown already stays, also what was dismissed. */
 export function showMessages(place: HTMLElement, messages: Message[]): void {
+  const text = JSON.stringify(messages);
+  if (shown.get(place) === text) return;
+  shown.set(place, text);
   place.replaceChildren(
     ...messages.map(({ kind, line, text, file }) => {
       const where = [kind, file, line > 0 ? `line ${line}` : ""].filter(Boolean).join(", ");

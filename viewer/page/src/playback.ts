@@ -8,6 +8,8 @@ export class Playback extends Changing {
   speed = 1;
   /** Whether the shape is interpolated between frames. */
   isBetween = false;
+  /** While it plays, the last frame before one that may not be shown stays. */
+  mayShow: (frame: number) => boolean = () => true;
   first = 0;
   last = 0;
   fps = 24;
@@ -69,11 +71,20 @@ export class Playback extends Changing {
     return Math.min(Math.max(frame, this.first), this.last);
   }
 
+  // How far on the way to a time all frames may be shown.
+  private reached(time: number): number {
+    const missing = (frame: number) => !this.mayShow(frame > this.last ? this.first : frame);
+    for (let next = this.frame + 1; next <= Math.min(time, this.last + 1); ++next) {
+      if ((next <= this.last || this.isLooping) && missing(next)) return Math.max(this.now, next - 1e-6);
+    }
+    return time;
+  }
+
   // Playback follows the clock: a slow machine drops frames instead of slowing down.
   private readonly tick = (now: number) => {
     if (!this.isPlaying) return;
     const shown = this.time;
-    this.now += (Math.max(now - this.lastTick, 0) / 1000) * this.fps * this.speed;
+    this.now = this.reached(this.now + (Math.max(now - this.lastTick, 0) / 1000) * this.fps * this.speed);
     this.lastTick = now;
     const length = this.last - this.first + 1; // the last frame lasts as long as the others
     if (this.now >= this.last + 1) {

@@ -13,6 +13,19 @@ import type { ThemeChoice } from "./theme";
 /** Meshes with more triangles are picked only when the cursor rests. */
 const manyTriangles = 150_000;
 
+/** What a ray meets first on the stage; planes can be seen through. */
+export function met(caster: THREE.Raycaster, views: SurfaceView[], colliders: ColliderView[]): { on: SurfaceView | ColliderView; hit: THREE.Intersection } | null {
+  const things = [...views, ...colliders.filter(({ group }) => group.visible)];
+  const hits = caster.intersectObjects(things.map(({ mesh }) => mesh), false).map((hit) => ({ on: things.find(({ mesh }) => mesh === hit.object)!, hit }));
+  return hits.find(({ on }) => "surface" in on || on.collider.points.length > 0) ?? hits[0] ?? null;
+}
+
+/** The vertex of the face that was hit which is nearest to where. */
+export function vertexAt(view: SurfaceView, { face, point }: THREE.Intersection): number {
+  const near = (vertex: number) => view.vertex(vertex).distanceToSquared(point);
+  return [face!.a, face!.b, face!.c].reduce((best, each) => (near(each) < near(best) ? each : best));
+}
+
 export class Readout {
   views: SurfaceView[] = [];
   colliders: ColliderView[] = [];
@@ -104,24 +117,9 @@ export class Readout {
     const box = this.stage.canvas.getBoundingClientRect();
     const at = new THREE.Vector2(((event.clientX - box.left) / box.width) * 2 - 1, 1 - ((event.clientY - box.top) / box.height) * 2);
     this.caster.setFromCamera(at, this.stage.camera);
-    const colliders = this.colliders.filter(({ group }) => group.visible);
-    const hits = this.caster.intersectObjects([...this.views, ...colliders].map(({ mesh }) => mesh), false);
-    const isPlane = ({ object }: THREE.Intersection) => colliders.some(({ mesh, collider }) => mesh === object && collider.points.length === 0);
-    const hit = hits.find((each) => !isPlane(each)) ?? hits[0]; // planes can be seen through
-    const collider = colliders.find(({ mesh }) => mesh === hit?.object);
-    if (collider) {
-      this.picked = collider;
-      this.update();
-      return;
-    }
-    const view = this.views.find((each) => each.mesh === hit?.object);
-    if (!hit?.face || !view) {
-      this.clear();
-      return;
-    }
-    const { a, b, c } = hit.face;
-    const near = (vertex: number) => view.vertex(vertex).distanceToSquared(hit.point);
-    this.picked = { view, vertex: [a, b, c].reduce((best, each) => (near(each) < near(best) ? each : best)) };
+    const there = met(this.caster, this.views, this.colliders);
+    if (!there) return this.clear();
+    this.picked = "surface" in there.on ? { view: there.on, vertex: vertexAt(there.on, there.hit) } : there.on;
     this.update();
   }
 }

@@ -4,7 +4,7 @@
 import * as THREE from "three";
 import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 
-import type { BakedSurface, Box, Lines, LinesPlace } from "./bake";
+import type { Box, Lines, LinesPlace, Marks, ShownSurface } from "./bake";
 import { Segments, SegmentsGeometry } from "./segments";
 import type { SurfaceView } from "./surface_view";
 import type { Palette } from "./theme";
@@ -104,7 +104,7 @@ class FollowingLines {
 }
 
 /** The lines of boxes, or those that the bake has. */
-function linesOfMark(surface: BakedSurface, boxes: Box[], place?: LinesPlace): Lines {
+function linesOfMark(surface: ShownSurface, boxes: Box[], place?: LinesPlace): Lines {
   return place ? surface.linesAt(place) : linesOf(outline(boxes, surface.head), surface.nodeVertices);
 }
 
@@ -126,8 +126,9 @@ export class RegionView {
   private readonly boxes: FollowingLines;
   private readonly idle: FollowingLines;
   private shown = "";
+  private marks: Marks | undefined;
 
-  constructor(private readonly view: SurfaceView) {
+  constructor(readonly view: SurfaceView) {
     const { name } = view.surface.head;
     this.rim = new FollowingLines(`${name} rim`, this.materials.rim);
     this.small = new FollowingLines(`${name} unsolved`, this.materials.small);
@@ -140,9 +141,10 @@ export class RegionView {
   show(frame: number, hasRegions: boolean, hasBoxes: boolean, isIdle: boolean[], isShown: boolean[]): void {
     const { surface } = this.view;
     const marks = surface.marksAt(frame);
-    const wanted = `${marks?.frame} ${hasRegions} ${hasBoxes} ${hasBoxes ? [...isIdle, ...isShown].map(Number).join("") : ""}`;
-    if (wanted !== this.shown) {
+    const wanted = `${hasRegions} ${hasBoxes} ${hasBoxes ? [...isIdle, ...isShown].map(Number).join("") : ""}`;
+    if (wanted !== this.shown || marks !== this.marks) {
       this.shown = wanted;
+      this.marks = marks;
       const rims = (isSolved: boolean) =>
         hasRegions ? (marks?.regions ?? []).filter((each) => each.solved === isSolved).map((each) => linesOfMark(surface, each.parts ?? [], each.lines)) : [];
       this.rim.take(rims(true));

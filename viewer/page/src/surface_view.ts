@@ -2,7 +2,7 @@
 
 import * as THREE from "three";
 
-import { matrixBetween, type BakedSurface } from "./bake";
+import { matrixBetween, type ShownSurface } from "./bake";
 import { bends } from "./relief";
 import { displacementRamp, signedRamp, velocityRamp, type Ramp } from "./ramp";
 import { dotMaterial, meanLength, paintNumbers, pinMaterial, sizeOf, surfaceMaterial, turnNormals } from "./surface_look";
@@ -19,7 +19,7 @@ export const ramps: Record<Exclude<Colour, "plain">, Ramp> = { displacement: dis
  * p_world = transform · (origin + p), as a three.js matrix; between frames each number is
  * interpolated.
  */
-function placement(surface: BakedSurface, index: number, share: number): THREE.Matrix4 {
+function placement(surface: ShownSurface, index: number, share: number): THREE.Matrix4 {
   const { origin, transforms } = surface.head;
   return matrixBetween(transforms, index, share, new THREE.Matrix4()).multiply(new THREE.Matrix4().makeTranslation(...origin));
 }
@@ -54,7 +54,7 @@ export class SurfaceView {
   private readonly dotRim = new THREE.Color();
 
   constructor(
-    readonly surface: BakedSurface,
+    readonly surface: ShownSurface,
     private readonly fps: number,
   ) {
     const count = surface.rest.length;

@@ -17,11 +17,11 @@ export function textSize(): number {
 
 /**
  * Gives a canvas the resolution of the screen; returns its size in CSS pixels, or null if it has
- * none.
+ * none. `settings`: of its first context.
  */
-export function prepare(canvas: HTMLCanvasElement): { context: CanvasRenderingContext2D; width: number; height: number } | null {
+export function prepare(canvas: HTMLCanvasElement, settings: CanvasRenderingContext2DSettings = {}): { context: CanvasRenderingContext2D; width: number; height: number } | null {
   const { width, height } = canvas.getBoundingClientRect();
-  const context = canvas.getContext("2d");
+  const context = canvas.getContext("2d", settings);
   if (!context || width === 0 || height === 0) return null;
   const [w, h] = pixelsOf(width, height);
   if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
@@ -45,6 +45,11 @@ function pixelsOf(width: number, height: number): [number, number] {
 
 export function diamond(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.beginPath();
+  addDiamond(context, x, y, radius);
+}
+
+/** Adds it to the path. */
+export function addDiamond(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.moveTo(x, y - radius);
   context.lineTo(x + radius, y);
   context.lineTo(x, y + radius);
@@ -52,9 +57,19 @@ export function diamond(context: CanvasRenderingContext2D, x: number, y: number,
   context.closePath();
 }
 
+/** A mark that is nearer to the one before it would not be seen. [px] */
+const leastGap = 0.5;
+
+const baseHeight = (height: number, text: number) => height - 1.45 * text;
+const markHeight = (height: number, text: number) => baseHeight(height, text) - 10 - 0.8 * text;
+
 export class Timeline {
   /** Frames with keys, ascending. */
   keyFrames: number[] = [];
+  /** Ranges of frames that are ready, if some may not be. */
+  ready: [number, number][] = [];
+  /** Frames that are marked. */
+  band: [number, number] | null = null;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -86,6 +101,12 @@ export class Timeline {
     this.playback.goTo(key);
   }
 
+  /** The middle of the mark of a key, from the upper left corner. [CSS px] */
+  placeOf(frame: number): { x: number; y: number } {
+    const text = textSize();
+    return { x: this.axis.x(frame, this.canvas), y: markHeight(this.canvas.clientHeight, text) };
+  }
+
   draw(): void {
     this.describe();
     const surface = prepare(this.canvas);
@@ -94,10 +115,18 @@ export class Timeline {
     const { palette } = this.themes;
     const { first, last } = this.playback;
     const { perFrame } = this.axis;
-    const x = (frame: number) => this.axis.x(frame, this.canvas);
+    const start = this.axis.x(first, this.canvas);
+    const x = (frame: number) => start + (frame - first) * perFrame;
     const text = textSize();
-    const base = height - 1.45 * text;
+    const base = baseHeight(height, text);
 
+    if (this.band) {
+      const [left, right] = [Math.max(this.band[0] - 0.5, first), Math.min(this.band[1] + 0.5, last)].map(x);
+      context.fillStyle = palette.pin;
+      context.globalAlpha = 0.25;
+      context.fillRect(left, 2, Math.max(right - left, 2), base - 2);
+      context.globalAlpha = 1;
+    }
     context.strokeStyle = palette.faint;
     context.fillStyle = palette.ink;
     context.font = `${text}px system-ui, sans-serif`;
@@ -122,10 +151,17 @@ export class Timeline {
     context.globalAlpha = 1;
 
     context.fillStyle = palette.curves[0];
+    let before = -Infinity;
     for (const key of this.keyFrames) {
-      if (key < first || key > last) continue;
-      diamond(context, x(key), base - 10 - 0.8 * text, 0.41 * text);
+      if (key < first || key > last || x(key) - before < leastGap) continue;
+      before = x(key);
+      diamond(context, x(key), markHeight(height, text), 0.41 * text);
       context.fill();
+    }
+    context.fillStyle = palette.ink;
+    for (const [from, to] of this.ready) {
+      const [left, right] = [Math.max(from - 0.5, first), Math.min(to + 0.5, last)].map(x);
+      context.fillRect(left, base - 0.5, right - left, 2);
     }
 
     const now = x(this.playback.time);

@@ -2,10 +2,10 @@
 
 import * as THREE from "three";
 
-import { at, matrixBetween, type Bake, type BakedCollider, type Force, type Vector } from "./bake";
+import { at, matrixBetween, type BakedCollider, type Force, type ShownBake, type Vector } from "./bake";
 import { ColliderView } from "./collider_view";
 import { ForceChoice } from "./force_choice";
-import { Gizmos } from "./gizmos";
+import { Gizmos, type Drawn } from "./gizmos";
 import type { Label } from "./labels";
 import { Playback } from "./playback";
 import { RegionView } from "./region_view";
@@ -33,10 +33,14 @@ export class Viewer {
   readonly stage: Stage;
   readonly display: Display = { style: "shaded", colour: "displacement", hasGizmos: true, hasRegions: true, hasBoxes: true, hasColliders: true, hasLabels: true, hasLegend: true, hasCaption: true, peak: null };
   readonly forces = new ForceChoice();
-  bake: Bake | null = null;
+  bake: ShownBake | null = null;
   views: SurfaceView[] = [];
   colliders: ColliderView[] = [];
+  /** The size of the scene: the diagonal of the box around its surfaces. */
+  reach = 1;
   private regions: RegionView[] = [];
+  private readonly outdated: { dispose(): void }[] = [];
+  private bounds = new THREE.Box3();
   private gizmos: Gizmos | null = null;
 
   constructor(
@@ -44,6 +48,9 @@ export class Viewer {
     private readonly themes: ThemeChoice,
   ) {
     this.stage = new Stage(canvas);
+    this.stage.onDraw(() => {
+      for (const each of this.outdated.splice(0)) each.dispose();
+    });
     this.playback.onChange(() => this.show());
     themes.onChange(() => this.redress());
     this.forces.onChange(() => {
@@ -54,19 +61,21 @@ export class Viewer {
   }
 
   /** Replaces the bake; camera, frame and colours stay if there was one before. */
-  load(bake: Bake): void {
+  load(bake: ShownBake): void {
     const isNew = this.bake === null;
-    this.clear();
+    const kept = this.views.filter((view) => bake.surfaces.includes(view.surface));
+    const keptRegions = this.regions.filter(({ view }) => kept.includes(view));
+    this.clear(kept);
     this.bake = bake;
     const { head } = bake;
-    this.views = bake.surfaces.map((surface) => new SurfaceView(surface, head.fps));
-    this.regions = this.views.map((view) => new RegionView(view));
+    this.views = bake.surfaces.map((surface) => kept.find((view) => view.surface === surface) ?? new SurfaceView(surface, head.fps));
+    this.regions = this.views.map((view) => keptRegions.find((region) => region.view === view) ?? new RegionView(view));
     const box = boxOf(bake, () => true, () => true);
-    const [reach, middle] = [box.getSize(new THREE.Vector3()).length(), box.getCenter(new THREE.Vector3())];
+    const [reach, middle] = [(this.reach = box.getSize(new THREE.Vector3()).length()), box.getCenter(new THREE.Vector3())];
     this.gizmos = new Gizmos(head.forces, reach, middle);
     this.colliders = bake.colliders.map((collider) => new ColliderView(collider, reach, middle));
     this.stage.scene.add(...[...this.views, ...this.colliders].map((view) => view.group), this.gizmos.group);
-    this.stage.bound(box);
+    if (isNew || !isAbout(this.bounds, box)) this.stage.bound((this.bounds = box));
     if (isNew && this.goesBothWays()) this.display.colour = "signed";
     this.aim();
     if (isNew) this.stage.look();
@@ -87,6 +96,15 @@ export class Viewer {
     return this.bake?.head.displaced?.[this.playback.frame - this.bake.head.first] ?? 0;
   }
 
+  /** What is drawn of the forces; `isShown` is not about `display`. */
+  drawn(): Drawn[] {
+    return this.gizmos?.drawn ?? [];
+  }
+
+  drawnOf(name: string): Drawn | undefined {
+    return this.gizmos?.drawnOf(name);
+  }
+
   /** Names of the forces and colliders that are drawn now. */
   labels(): Label[] {
     const { display } = this;
@@ -104,6 +122,11 @@ export class Viewer {
     for (const collider of this.colliders) collider.colour(palette);
     this.gizmos?.colour(palette);
     this.aim();
+    this.show();
+  }
+
+  /** Call after frames have changed. */
+  redraw(): void {
     this.show();
   }
 
@@ -148,24 +171,27 @@ export class Viewer {
     this.stage.invalidate();
   }
 
-  private clear(): void {
-    for (const view of [...this.views, ...this.colliders]) {
-      this.stage.scene.remove(view.group);
-      view.dispose();
-    }
-    for (const region of this.regions) region.dispose();
-    if (this.gizmos) {
-      this.stage.scene.remove(this.gizmos.group);
-      this.gizmos.dispose();
-    }
+  // Removes everything but some surfaces. What was drawn is kept until its successors are: until then the programs of
+  // their materials are used, and need not be compiled anew.
+  private clear(kept: SurfaceView[]): void {
+    const views = [...this.views.filter((each) => !kept.includes(each)), ...this.colliders];
+    for (const view of views) this.stage.scene.remove(view.group);
+    if (this.gizmos) this.stage.scene.remove(this.gizmos.group);
+    this.outdated.push(...views, ...this.regions.filter(({ view }) => !kept.includes(view)), ...(this.gizmos ? [this.gizmos] : []));
   }
+}
+
+/** Whether the floor and the limits of the camera may stay as they are for another box. */
+function isAbout(bounds: THREE.Box3, box: THREE.Box3): boolean {
+  const [reach, size] = [bounds, box].map((each) => each.getSize(new THREE.Vector3()).length());
+  return bounds.clone().expandByScalar(0.25 * reach).containsBox(box) && size > 0.5 * reach;
 }
 
 /**
  * The box around the surfaces over all frames, around those forces that are shown, near the surfaces, and not about the
  * whole of them, and around the parts of solids near the surfaces.
  */
-function boxOf(bake: Bake, isShown: (force: Force) => boolean, isThere: (collider: BakedCollider) => boolean): THREE.Box3 {
+function boxOf(bake: ShownBake, isShown: (force: Force) => boolean, isThere: (collider: BakedCollider) => boolean): THREE.Box3 {
   const box = new THREE.Box3();
   for (const { low, high } of bake.head.surfaces) box.expandByPoint(new THREE.Vector3(...low)).expandByPoint(new THREE.Vector3(...high));
   const reach = box.getSize(new THREE.Vector3()).length();
