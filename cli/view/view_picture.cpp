@@ -45,14 +45,11 @@ tl::unexpected<Error> no_browser(std::string_view option) {
 Result<SupervisedProgram> open_browser(const std::string& url, const ScratchFolder& folder) {
   const auto* const program = std::find_if(browsers.begin(), browsers.end(), &is_on_path);
   if (program == browsers.end()) return no_browser("--png");
-  std::vector<std::string> words = {*program,
-                                    "--headless",
-                                    "--no-first-run",
-                                    "--disable-extensions",
-                                    "--disable-dev-shm-usage",
-                                    "--use-angle=swiftshader",
-                                    "--enable-unsafe-swiftshader",
-                                    "--user-data-dir=" + folder.path()};
+  std::vector<std::string> words = {
+      *program, "--headless", "--no-first-run", "--disable-extensions", "--disable-dev-shm-usage",
+      "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+      // One process less, and no picture of the window.
+      "--in-process-gpu", "--disable-gpu-compositing", "--user-data-dir=" + folder.path()};
   // Chromium does not run as root with its sandbox. It opens only our page.
   if (geteuid() == 0) words.emplace_back("--no-sandbox");
   words.push_back(url);
