@@ -22,8 +22,9 @@ import numpy as np
 from command import Command, PLIANT, SANITIZED, SCENE, SHIM, SOURCE, main
 from view_server import HAS_PAGE
 
+PYTHON = f"#!{sys.executable}\n"
 # Started like Chromium. Each test appends its own code; results go to a file.
-BROWSER = """#!/usr/bin/python3
+BROWSER = PYTHON + """
 import json, os, re, resource, socket, struct, subprocess, sys, time, urllib.parse, zlib
 way = urllib.parse.unquote_to_bytes(sys.argv[-1].removeprefix("file://"))
 with open(way, encoding="utf-8") as file:
@@ -496,7 +497,7 @@ open(os.path.join(folder, f"child-{os.getpid()}"), "w").close()
 
     def test_a_kill_while_no_program_runs_leaves_nothing(self):
         # ffmpeg has ended, and its movie, which has no end, is copied.
-        self.program("ffmpeg", """#!/usr/bin/python3
+        self.program("ffmpeg", PYTHON + """
 import os, shutil, sys
 shutil.copyfileobj(sys.stdin.buffer, open(os.devnull, "wb"))
 open(sys.argv[-1], "w").truncate(20_000_000_000)
@@ -540,7 +541,7 @@ post(png(64, 48))
 
     def test_what_the_programs_print_is_short_and_harmless(self):
         noise = "\x1b]0;owned\x07\x1b[2J\0" + "x" * 5_000_000
-        self.program("ffmpeg", f"#!/usr/bin/python3\nimport sys\nsys.stdout.write({noise!r})\nsys.stderr.write({noise!r})\nsys.exit(1)\n")
+        self.program("ffmpeg", PYTHON + f"import sys\nsys.stdout.write({noise!r})\nsys.stderr.write({noise!r})\nsys.exit(1)\n")
         shout = f"sys.stdout.write({noise!r})\nsys.stderr.write({noise!r})\n"
         result, _ = self.draw(shout + "post(bytes(64 * 48 * 4))", "--movie", "out.mp4", code=1)
         self.assertTrue(result.stderr.isprintable() or result.stderr.count("\n") == 1, result.stderr[:100])
@@ -551,7 +552,7 @@ post(png(64, 48))
         self.assertEqual((result.stdout, result.stderr), ("", ""))
 
     def test_an_end_of_ffmpeg_is_noticed_before_the_next_picture(self):
-        self.program("ffmpeg", f"#!/usr/bin/python3\nimport sys\nsys.stdin.buffer.read({64 * 48 * 4})\nsys.exit('no room')\n")
+        self.program("ffmpeg", PYTHON + f"import sys\nsys.stdin.buffer.read({64 * 48 * 4})\nsys.exit('no room')\n")
         result, _ = self.draw("post(bytes(64 * 48 * 4))", "--movie", "out.mp4", code=1)  # and no second one
         self.assertIn("ffmpeg could not write the movie: no room", result.stderr)
 
@@ -563,7 +564,7 @@ post(png(64, 48))
         self.await_end_of(family)
 
     # Stores its input; its output is one byte.
-    FFMPEG = """#!/usr/bin/python3
+    FFMPEG = PYTHON + """
 import os, shutil, sys
 with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "frames"), "wb") as file:
     shutil.copyfileobj(sys.stdin.buffer, file)
