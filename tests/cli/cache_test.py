@@ -47,7 +47,7 @@ class Cache(Command):
         """Frames solved and read, from the summary; checks that nothing else is printed."""
         result = self.bake(*arguments, **options)
         self.assertEqual(result.stderr, "")
-        found = re.search(r", (\d+) frames solved, (\d+) read\n$", result.stdout)
+        found = re.search(r", (\d+) frames? solved, (\d+) read\n$", result.stdout)
         self.assertTrue(found, result.stdout)
         return tuple(map(int, found.groups()))
 

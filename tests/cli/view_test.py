@@ -368,7 +368,7 @@ class Serve(View):
             self.scene(magnitude=magnitude)
             server.wait_for("baked")
         _, out, _ = server.close()
-        solved = [int(count) for count in re.findall(r", (\d+) frames solved, \d+ read\n", out)]
+        solved = [int(count) for count in re.findall(r", (\d+) frames? solved, \d+ read\n", out)]
         self.assertEqual(len(solved), 4)
         self.assertGreater(solved[2], 0)
         self.assertEqual(solved[3], 0)
