@@ -105,9 +105,9 @@ struct Numbers {
 };
 
 // The <material>, with a comment if that is not empty.
-edit::SetPart part_of(const SceneDocument& scene, const Look& look, const Numbers& numbers,
+edit::SetPart part_of(const std::string& surface, const Look& look, const Numbers& numbers,
                       std::string comment = {}) {
-  edit::SetPart part{.surface = scene.scene().surfaces.front().name,
+  edit::SetPart part{.surface = surface,
                      .part = "material",
                      .attributes = {{"density", rounded(numbers.density)},
                                     {"dampingRatio", edit::to_text(look.damping_ratio)},
@@ -124,8 +124,9 @@ edit::SetPart part_of(const SceneDocument& scene, const Look& look, const Number
 }
 
 // The text of the scene with this material instead.
-Result<std::string> text_with(SceneDocument scene, const Look& look, const Numbers& numbers) {
-  auto changed = scene.apply({part_of(scene, look, numbers)});
+Result<std::string> text_with(SceneDocument scene, const std::string& surface, const Look& look,
+                              const Numbers& numbers) {
+  auto changed = scene.apply({part_of(surface, look, numbers)});
   if (!changed) return fail(changed.error());
   return scene.text();
 }
@@ -152,13 +153,14 @@ std::string comment_of(const Look& look, const Numbers& numbers, bool is_by_iner
 // The yield with which the peak is as much larger than the elastic one as the look wants.
 Result<double> find_yield(const SceneDocument& scene, const Look& look, const Numbers& numbers,
                           double elastic_peak, const StarterSource& source) {
+  const std::string& surface = scene.scene().surfaces[source.surface].name;
   // The bend at the peak is some times `numbers.yield`: from half of that, where all flows, to
   // where nothing does. Halving the range six times leaves 5 %.
   double low = 0.5 * numbers.yield, high = 16 * numbers.yield;
   for (int k = 0; k < 6; ++k) {
     Numbers trial = numbers;
     trial.yield = std::sqrt(low * high);
-    const auto text = text_with(scene, look, trial);
+    const auto text = text_with(scene, surface, look, trial);
     if (!text) return fail(text.error());
     const double most = (1 + look.give) * elastic_peak;
     const auto peak = played_peak(*text, source, most);
@@ -180,7 +182,7 @@ Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const St
                                 const StarterSource& source) {
   // Where it yields a dent stays, and should be round. The whole of a sheet is the same region
   // either way, and its grid is faster.
-  const Surface& surface = scene.scene().surfaces.front();
+  const Surface surface = scene.scene().surfaces[source.surface];  // the scene changes
   if (look.give > 0 && std::holds_alternative<GridSheet>(surface.shape) &&
       surface.solver.region == SolvedRegion::Forces) {
     const auto changed = scene.apply({edit::Set{surface.name + ".uv", "surface"}});
@@ -189,13 +191,13 @@ Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const St
   // A density and a stiffness of 1 show what others make: frequency² and peak are proportional to
   // 1/density and 1/stiffness, as long as nothing yields.
   Numbers numbers{.density = 1, .stiffness = 1};
-  auto text = text_with(scene, look, numbers);
+  auto text = text_with(scene, surface.name, look, numbers);
   if (!text) return fail(text.error());
   auto facts = look_at(*text, source);
   if (!facts) return facts;
   if (auto moves = check_moves(*facts); !moves) return fail(moves.error());
   numbers.density = std::pow(facts->frequency / look.frequency, 2);
-  text = text_with(scene, look, numbers);
+  text = text_with(scene, surface.name, look, numbers);
   if (!text) return fail(text.error());
   const auto peak = played_peak(*text, source);
   if (!peak) return fail(peak.error());
@@ -213,8 +215,8 @@ Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const St
     numbers.yield = *found;
     facts->peak *= 1 + look.give;
   }
-  const auto changed =
-      scene.apply({part_of(scene, look, numbers, comment_of(look, numbers, facts->is_by_inertia))});
+  const auto changed = scene.apply(
+      {part_of(surface.name, look, numbers, comment_of(look, numbers, facts->is_by_inertia))});
   if (!changed) return fail(changed.error());
   return facts;
 }

@@ -29,7 +29,7 @@ struct Look {
 /// All looks, the most elastic first.
 std::span<const Look> looks();
 
-/// Gives the first surface of a scene the look, in place of its <material>: finds the numbers that
+/// Gives the surface of `source` the look, in place of its <material>: finds the numbers that
 /// the look has at the size of the surface and its forces. `own` are the facts of the scene as it
 /// is. Returns those of the result. Errors: those of `look_and_play`.
 Result<StarterFacts> apply_look(SceneDocument& scene, const Look& look, const StarterFacts& own,

@@ -90,22 +90,24 @@ Result<void> check(const NewOptions& options, const Starter& starter) {
       return refuse(
           fmt::format("--mesh {}: {}", printable(*options.mesh), readable.error().message));
   }
-  if (options.out) {
-    if (auto there = check_output_file("-o", *options.out); !there) return there;
-    if (fs::path(*options.out).extension() != ".xml") {
-      return refuse(
-          fmt::format("-o {}: the name of a scene must end in .xml", printable(*options.out)));
-    }
-    return {};
-  }
-  if (!starter.mesh.empty() && !options.mesh) {
+  if (!starter.mesh.empty() && !options.mesh && !options.out) {
     return refuse(
         fmt::format("{} needs -o SCENE, because its mesh is written beside the scene, or "
                     "--mesh with a mesh of your own",
                     starter.name));
   }
-  if (options.has_schema) return refuse("--schema needs -o SCENE: it is written beside the scene");
+  if (options.has_schema && !options.out)
+    return refuse("--schema needs -o SCENE: it is written beside the scene");
   return {};
+}
+
+// Whether the scene itself may be written.
+Result<void> check_out(const NewOptions& options) {
+  if (!options.out) return {};
+  if (auto there = check_output_file("-o", *options.out); !there) return there;
+  if (fs::path(*options.out).extension() == ".xml") return {};
+  return refuse(
+      fmt::format("-o {}: the name of a scene must end in .xml", printable(*options.out)));
 }
 
 // An error of the starter's text with a mesh, or of no file, is one of the mesh, on no line that
@@ -222,8 +224,10 @@ Result<void> write(const std::vector<NewFile>& files) {
   return {};
 }
 
-// The files to write, the scene last: whoever sees it finds the others.
-Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& starter) {
+// The files to write, the scene last: whoever sees it finds the others. `writes_scene`: the scene
+// too, not only its text is wanted.
+Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& starter,
+                                      bool writes_scene) {
   const fs::path out = options.out.value_or("");
   std::vector<NewFile> files;
   if (!starter.mesh.empty() && !options.mesh) {
@@ -233,6 +237,7 @@ Result<std::vector<NewFile>> files_of(const NewOptions& options, const Starter& 
   files.push_back({out});
   if (options.out) {
     for (NewFile& file : files) {
+      if (!writes_scene && file.path == out) continue;
       file.may_replace =
           options.is_forced || (file.path.filename() == schema_name && is_there(file));
       if (auto free = check_place(file, options); !free) return fail(free.error());
@@ -267,6 +272,23 @@ void add_new(CLI::App& app, NewOptions& options) {
   create->add_flag("--quiet", options.is_quiet, "No progress");
 }
 
+Result<NewScene> new_scene(const NewOptions& options) {
+  const auto known = names_of(starters());
+  if (std::ranges::find(known, options.name.value_or("")) == known.end())
+    return refuse(fmt::format("no starter is named {}", printable(options.name.value_or(""))));
+  const auto materials = names_of(looks());
+  if (options.material && std::ranges::find(materials, *options.material) == materials.end())
+    return refuse(fmt::format("no material is named {}", printable(*options.material)));
+  const Starter& starter = find(starters(), *options.name);
+  if (auto allowed = check(options, starter); !allowed) return fail(allowed.error());
+  auto files = files_of(options, starter, false);
+  if (!files) return fail(files.error());
+  NewScene scene{std::move(files->back().text)};
+  files->pop_back();
+  for (NewFile& file : *files) scene.files.emplace_back(file.path.string(), std::move(file.text));
+  return scene;
+}
+
 int run_new(const NewOptions& options) {
   if (!options.name) {
     if (options.out || options.material || options.mesh || options.object || options.root ||
@@ -279,7 +301,8 @@ int run_new(const NewOptions& options) {
   catch_interrupts();
   const Starter& starter = find(starters(), *options.name);
   if (auto allowed = check(options, starter); !allowed) return report(allowed.error());
-  const auto files = files_of(options, starter);
+  if (auto allowed = check_out(options); !allowed) return report(allowed.error());
+  const auto files = files_of(options, starter, true);
   if (!files) return report(files.error());
   if (!options.out) {
     print(stdout, files->back().text);

@@ -2,6 +2,8 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/commands/scene_input.hpp"
 #include "cli/terminal/command_line.hpp"
@@ -22,6 +24,16 @@ struct NewOptions {
 };
 
 void add_new(CLI::App& app, NewOptions& options);
+
+/// The text of a new scene, and those of the files beside it that it names, by their places.
+struct NewScene {
+  std::string text;
+  std::vector<std::pair<std::string, std::string>> files = {};
+};
+
+/// What `run_new` would write to `options.out`, which it needs, whatever is there in place of the
+/// scene. Errors: those of `run_new`.
+Result<NewScene> new_scene(const NewOptions& options);
 
 /// Writes a starter scene, or lists the starters. Returns the exit code.
 int run_new(const NewOptions& options);

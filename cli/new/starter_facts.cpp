@@ -14,13 +14,14 @@ namespace pliant::cli {
 namespace {
 
 // Half the width of what moves. A surface of triangles: the radius that selects it.
-double reach_of(const Scene& scene, const RestShape& shape, const Preview& preview) {
+double reach_of(const Scene& scene, const Surface& surface, const RestShape& shape,
+                const Preview& preview) {
   if (shape.grid) {
     const auto& [i0, i1, j0, j1] = preview.selected;
     const double along_u = (i1 - i0) * shape.grid->hu, along_v = (j1 - j0) * shape.grid->hv;
     return std::min(along_u, along_v) / 2;
   }
-  if (scene.surfaces.front().solver.region == SolvedRegion::All) return 0.5;
+  if (surface.solver.region == SolvedRegion::All) return 0.5;
   double radius = 0;
   for (const Force& force : scene.forces) {
     radius = std::max(radius, force.deformation_radius.at(*preview.frame)[0]);
@@ -35,7 +36,7 @@ Result<Simulation> simulation_of(const std::string& text, const StarterSource& s
   if (!source.obj.empty()) {
     Result<Mesh> mesh = parse_obj(source.obj, source.name);
     if (!mesh) return fail(mesh.error());
-    scene->surfaces.front().shape = *std::move(mesh);
+    scene->surfaces[source.surface].shape = *std::move(mesh);
   }
   return Simulation::make(*std::move(scene), source.options);
 }
@@ -45,16 +46,16 @@ Result<Simulation> simulation_of(const std::string& text, const StarterSource& s
 Result<MeshPiece> measure(const std::string& text, const StarterSource& source) {
   const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  return largest_piece(simulation->rest_shapes().front());
+  return largest_piece(simulation->rest_shapes()[source.surface]);
 }
 
 Result<StarterFacts> look_at(const std::string& text, const StarterSource& source) {
   const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  const auto preview = preview_slowest(*simulation, 0, source.options);
+  const auto preview = preview_slowest(*simulation, source.surface, source.options);
   if (!preview) return fail(preview.error());
   const Scene& scene = simulation->scene();
-  const RestShape& shape = simulation->rest_shapes().front();
+  const RestShape& shape = simulation->rest_shapes()[source.surface];
   StarterFacts facts{.size = largest_piece(shape).diagonal()};
   facts.is_by_inertia = std::ranges::any_of(scene.forces, [](const Force& force) {
     return std::holds_alternative<InertiaChannels>(force.kind);
@@ -63,7 +64,7 @@ Result<StarterFacts> look_at(const std::string& text, const StarterSource& sourc
   facts.selects = true;
   facts.is_solvable = (*preview)->is_solvable;
   facts.is_held = (*preview)->is_held;
-  facts.reach = reach_of(scene, shape, **preview);
+  facts.reach = reach_of(scene, scene.surfaces[source.surface], shape, **preview);
   for (const RegionPreview& region : (*preview)->regions) {
     if (!region.has_vibration) continue;
     facts.frequency = facts.frequency == 0 ? region.first_frequency
@@ -92,7 +93,7 @@ Result<void> check_moves(const StarterFacts& facts) {
 Result<double> played_peak(const std::string& text, const StarterSource& source, double until) {
   const auto simulation = simulation_of(text, source);
   if (!simulation) return fail(simulation.error());
-  const auto played = play_forces(*simulation, 0, until, source.options);
+  const auto played = play_forces(*simulation, source.surface, until, source.options);
   if (!played) return fail(played.error());
   return played->peak;
 }

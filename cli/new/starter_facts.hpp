@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <string>
@@ -18,10 +19,11 @@ struct StarterSource {
   std::string folder;         ///< to which its mesh is relative
   std::string root = {};      ///< as of `load_scene`
   std::string_view obj = {};  ///< the text of its mesh; empty: the file that the scene names
+  std::size_t surface = 0;    ///< the one that is looked at
   SimulationOptions options = {};
 };
 
-/// What the first surface of a scene does under all its forces, to choose numbers.
+/// What a surface of a scene does under all its forces, to choose numbers.
 struct StarterFacts {
   double size = 0;             ///< of its largest piece: the diagonal of a box around it [length]
   bool selects = false;        ///< whether anything is selected; false: the following are unknown
@@ -37,7 +39,7 @@ struct StarterFacts {
   }  ///< the size of its curvature [length/uv²]
 };
 
-/// The largest piece of the first surface. Errors: those of `parse_scene` and `Simulation::make`.
+/// The largest piece of the surface. Errors: those of `parse_scene` and `Simulation::make`.
 Result<MeshPiece> measure(const std::string& text, const StarterSource& source);
 
 /// Reads a scene, and finds its slowest vibration; the peak is left out. Errors: those of
@@ -47,7 +49,7 @@ Result<StarterFacts> look_at(const std::string& text, const StarterSource& sourc
 /// Checks that something moves, is held and vibrates. Errors: InvalidInput with the reason.
 Result<void> check_moves(const StarterFacts& facts);
 
-/// The largest displacement of the first surface in the whole animation, world [length], or one
+/// The largest displacement of the surface in the whole animation, world [length], or one
 /// larger than `until` if there is one. Errors: those of `parse_scene`, `Simulation::make` and
 /// `play_forces`.
 Result<double> played_peak(const std::string& text, const StarterSource& source,
