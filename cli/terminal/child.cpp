@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -37,8 +38,10 @@ std::vector<char*> pointers_to(std::vector<std::string>& words) {
   return pointers;
 }
 
-std::vector<char*> environment_without(std::span<const std::string_view> dropped) {
+std::vector<char*> environment_with(std::vector<std::string>& added,
+                                    std::span<const std::string_view> dropped) {
   std::vector<char*> variables;
+  for (std::string& variable : added) variables.push_back(variable.data());
   for (char** variable = environ; *variable != nullptr; ++variable) {
     const auto begins = [&](std::string_view text) {
       return std::string_view(*variable).starts_with(text);
@@ -118,7 +121,8 @@ bool Pipe::open() {
 }
 
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
-                          std::span<const std::string_view> dropped) {
+                          std::span<const std::string_view> dropped,
+                          std::span<const std::string> added) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   const auto connect = [&](int ours, int its, int access) {
@@ -136,6 +140,7 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
   // It gets nothing else: the sockets of our server would be open as long as it.
   const int others = streams.lifeline >= 0 ? ChildStreams::lifeline_end + 1 : STDERR_FILENO + 1;
   posix_spawn_file_actions_addclosefrom_np(&files, others);
+  if (!streams.folder.empty()) posix_spawn_file_actions_addchdir_np(&files, streams.folder.c_str());
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t signals;
@@ -143,7 +148,8 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
   posix_spawnattr_setsigdefault(&attributes, &signals);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
   std::vector<char*> arguments = pointers_to(words);
-  std::vector<char*> variables = environment_without(dropped);
+  std::vector<std::string> own(added.begin(), added.end());
+  std::vector<char*> variables = environment_with(own, dropped);
   pid_t id = 0;
   const int failed =
       posix_spawnp(&id, arguments.front(), &files, &attributes, arguments.data(), variables.data());
@@ -153,11 +159,19 @@ Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& st
   return id;
 }
 
+void await_child(pid_t child) {
+  while (!code_of(child, 0)) continue;
+}
+
 Result<ProgramEnd> run_program(const std::vector<std::string>& words, const ProgramRun& run) {
   Pipe output, errors;
   if (!output.open() || !errors.open()) return cannot_start(words.front(), errno);
-  const auto id = start_child(
-      words, {.output = output.writing.number(), .errors = errors.writing.number()}, run.dropped);
+  const auto id = start_child(words,
+                              {.input = run.input,
+                               .output = output.writing.number(),
+                               .errors = errors.writing.number(),
+                               .folder = run.folder},
+                              run.dropped, run.added);
   if (!id) return fail(id.error());
   const auto begin = std::chrono::steady_clock::now();
   output.writing = OpenDescriptor();  // otherwise the pipes would never end
@@ -175,6 +189,14 @@ Result<ProgramEnd> run_program(const std::vector<std::string>& words, const Prog
     if (!run.take_message) end.errors += bytes.substr(0, most_kept - end.errors.size());
   };
   const auto kill_it = [&] {
+    if (run.ends_gently) {
+      kill(-*id, SIGINT);
+      constexpr int most_ticks = 100;
+      for (int k = 0; k < most_ticks; ++k) {
+        if (code_of(*id)) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(tick));
+      }
+    }
     kill(-*id, SIGKILL);
     while (!code_of(*id, 0)) continue;
   };

@@ -32,20 +32,29 @@ struct ChildStreams {
   int input = -1;  ///< -1: /dev/null
   int output = -1;
   int errors = -1;
-  int lifeline = -1;  ///< becomes `lifeline_end` of the program; -1: none
+  int lifeline = -1;        ///< becomes `lifeline_end` of the program; -1: none
+  std::string folder = {};  ///< its working folder; empty: ours
 
   static constexpr int lifeline_end = 3;
 };
 
 /// Starts a program of the PATH by a list of arguments, never through a shell, in its own process
 /// group, so that Ctrl-C reaches only us. It ignores no signal. It lacks variables, NAME=VALUE,
-/// that begin with a text of `dropped`. Errors: Unwritable, with the reason.
+/// that begin with a text of `dropped`, and has those of `added`. Errors: Unwritable, with the
+/// reason.
 Result<pid_t> start_child(std::vector<std::string> words, const ChildStreams& streams,
-                          std::span<const std::string_view> dropped = {});
+                          std::span<const std::string_view> dropped = {},
+                          std::span<const std::string> added = {});
+
+/// Waits until it has ended.
+void await_child(pid_t child);
 
 /// How a program is run to its end.
 struct ProgramRun {
   std::span<const std::string_view> dropped = {};  ///< as in `start_child`
+  std::span<const std::string> added = {};         ///< likewise
+  int input = -1;                                  ///< as in `ChildStreams`
+  std::string folder = {};                         ///< likewise
   /// Called with each line of its output, without the line end; of one that is longer than 64 KiB,
   /// only with so much.
   std::function<void(std::string_view)> take_line = {};
@@ -53,6 +62,7 @@ struct ProgramRun {
   std::function<void(std::string_view)> take_message = {};
   std::chrono::seconds patience = std::chrono::seconds(30);  ///< after which it is killed
   StopRequest should_stop = {};  ///< asked ten times a second; true: it is killed
+  bool ends_gently = false;      ///< then it gets a SIGINT first, and some seconds to clean up
 };
 
 /// How a program ended.

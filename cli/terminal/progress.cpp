@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -28,6 +29,12 @@ std::string bar_of(int done, int count) {
                      done, count);
 }
 
+// Whether a program reads the progress, in place of a person.
+bool is_for_program() {
+  static const bool is_asked = std::getenv(progress_variable) != nullptr;
+  return is_asked;
+}
+
 bool is_visible(bool is_quiet) { return !is_quiet && isatty(STDERR_FILENO) != 0; }
 
 }  // namespace
@@ -42,6 +49,10 @@ Progress::~Progress() {
 void Progress::reach(int done) {
   done_ = done;
   const auto now = Clock::now();
+  if (is_for_program() && (now - drawn_ >= std::chrono::milliseconds(100) || done_ == count_)) {
+    drawn_ = now;
+    std::fputs(fmt::format("{}/{}\n", done_, count_).c_str(), stderr);
+  }
   if (!is_shown_ || (now - drawn_ < std::chrono::milliseconds(100) && done_ < count_)) return;
   drawn_ = now;
   draw_bar(now);

@@ -9,6 +9,10 @@
 
 namespace pliant::cli {
 
+/// If this variable is set, progress is also told to a program that reads our messages: lines
+/// `12/96` on stderr.
+inline constexpr const char* progress_variable = "PLIANT_PROGRESS";
+
 /// A bar on stderr with frames, or takes, done and per second, and the time left; not shown if
 /// stderr is not a terminal.
 class Progress {
