@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -11,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include "cli/commands/cache.hpp"
 #include "cli/commands/scene_input.hpp"
@@ -20,6 +18,7 @@
 #include "cli/terminal/report.hpp"
 #include "cli/view/view.hpp"
 #include "cli/view/view_scene.hpp"
+#include "editor/files.hpp"
 #include "pliant/scene/inputs.hpp"
 #include "viewer/server.hpp"
 
@@ -34,8 +33,8 @@ constexpr auto pause = 50ms;
 class Watch {
  public:
   explicit Watch(std::vector<std::filesystem::path> files) {
-    for (std::filesystem::path& file : files) stamps_.emplace(std::move(file), Stamp());
-    for (auto& [file, stamp] : stamps_) stamp = stamp_of(file);
+    for (std::filesystem::path& file : files) stamps_.emplace(std::move(file), editor::FileStamp());
+    for (auto& [file, stamp] : stamps_) stamp = editor::stamp_of(file);
   }
 
   // Whether a file has changed since construction. Thread-safe.
@@ -46,28 +45,13 @@ class Watch {
     const auto next = now + std::chrono::steady_clock::duration(pause).count();
     if (!due_.compare_exchange_strong(due, next)) return has_changed_;  // another thread checks
     for (const auto& [file, stamp] : stamps_) {
-      if (stamp_of(file) != stamp) has_changed_ = true;
+      if (editor::stamp_of(file) != stamp) has_changed_ = true;
     }
     return has_changed_;
   }
 
  private:
-  // Differs if a file was written, deleted, or replaced by another one of the same size and age.
-  using Stamp = std::array<std::int64_t, 7>;
-
-  static Stamp stamp_of(const std::filesystem::path& file) {
-    struct stat facts = {};
-    if (stat(file.c_str(), &facts) != 0) return {};
-    return {static_cast<std::int64_t>(facts.st_dev),
-            static_cast<std::int64_t>(facts.st_ino),
-            facts.st_size,
-            facts.st_mtim.tv_sec,
-            facts.st_mtim.tv_nsec,
-            facts.st_ctim.tv_sec,
-            facts.st_ctim.tv_nsec};
-  }
-
-  std::map<std::filesystem::path, Stamp> stamps_;
+  std::map<std::filesystem::path, editor::FileStamp> stamps_;
   std::atomic<std::chrono::steady_clock::rep> due_ = 0;
   std::atomic<bool> has_changed_ = false;
 };

@@ -9,7 +9,7 @@ import re
 import sys
 
 SOURCE = os.path.abspath(sys.argv[1])
-FOLDERS = ["lib", "forces", "timeline", "viewer", "cli", "bench", "cmake", "script", "tests", "examples"]
+FOLDERS = ["lib", "forces", "timeline", "viewer", "editor", "cli", "bench", "cmake", "script", "tests", "examples"]
 TEXTS = re.compile(r"(\.([ch]pp|py|cmake|ts|html|xml|in)|/CMakeLists\.txt|^script/\w+)$")
 
 
