@@ -15,6 +15,7 @@
 #include "cli/terminal/interrupt.hpp"
 #include "cli/terminal/progress.hpp"
 #include "cli/terminal/report.hpp"
+#include "editor/motion.hpp"
 #include "pliant/core/shelf.hpp"
 #include "pliant/core/text.hpp"
 #include "pliant/files/output_place.hpp"
@@ -53,35 +54,11 @@ Result<SceneDocument> open_document(const SuggestOptions& options) {
                              {.root = folder->string(), .should_stop = &was_interrupted});
 }
 
-// A number of a scene; null: it has no such channel.
-const Channel<1>* find_number(const Scene& scene, const std::string& path) {
-  const std::vector<NamedChannel> channels = channels_of(scene);
-  const auto found = std::ranges::find(channels, path, &NamedChannel::path);
-  if (found == channels.end()) return nullptr;
-  const auto* const number = std::get_if<const Channel<1>*>(&found->channel);
-  return number ? *number : nullptr;
-}
-
-// What makes the suggested values of those that differ.
-std::vector<Operation> operations_for(const Suggestion& suggestion, const Scene& scene) {
-  std::vector<Operation> operations;
-  for (const SuggestedValue& value : suggestion.values) {
-    const Channel<1>* const wanted = find_number(suggestion.scene, value.path);
-    const Channel<1>* const present = find_number(scene, value.path);
-    if (!wanted || (present && *wanted == *present)) continue;
-    if (wanted->is_animated()) {
-      operations.emplace_back(edit::SetCurve{value.path, wanted->curve().keys()});
-    } else {
-      operations.emplace_back(edit::Set{value.path, edit::to_text(wanted->at(0)[0])});
-    }
-  }
-  return operations;
-}
-
 // Writes the suggested values into the scene's file, and notes what that does beside. Returns
 // whether it changes the file.
 Result<bool> write(SceneDocument& document, Suggestion& suggestion) {
-  const auto changed = document.apply(operations_for(suggestion, document.scene()), "suggest");
+  const auto changed =
+      document.apply(editor::operations_for(suggestion, document.scene()), "suggest");
   if (!changed) return fail(changed.error());
   for (const TextEdit& edit : changed->edits) {
     if (edit.removed.find('$') == std::string::npos) continue;
