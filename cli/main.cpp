@@ -16,6 +16,7 @@
 #include "cli/commands/replay.hpp"
 #include "cli/commands/suggest.hpp"
 #include "cli/commands/validate.hpp"
+#include "cli/edit/edit.hpp"
 #include "cli/new/new.hpp"
 #include "cli/sweep/sweep.hpp"
 #include "cli/terminal/complete.hpp"
@@ -56,6 +57,8 @@ int run(int count, char* arguments[]) {
   add_replay(app, replay);
   ViewOptions view;
   add_view(app, view);
+  EditOptions edit;
+  add_edit(app, edit);
   CurveExchangeOptions importing;
   add_import(app, importing);
   CurveExchangeOptions exporting;
@@ -88,6 +91,7 @@ int run(int count, char* arguments[]) {
   if (app.got_subcommand("sweep")) return run_sweep(app, sweep);
   if (app.got_subcommand("replay")) return run_replay(app, replay);
   if (app.got_subcommand("view")) return run_view(view);
+  if (app.got_subcommand("edit")) return run_edit(edit);
   if (app.got_subcommand("import")) return run_import(importing);
   if (app.got_subcommand("export")) return run_export(exporting);
   return run_bake(bake);
