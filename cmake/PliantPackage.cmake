@@ -7,8 +7,8 @@ install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}"
         FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.xml" PATTERN "*.xsd")
 # The schema of scenes, where editors are told to look for it (docs/scene-format.md, "Schema").
 install(FILES docs/pliant-scene.xsd DESTINATION "${CMAKE_INSTALL_DATADIR}/pliant")
-install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-        FILES_MATCHING PATTERN "*.xml" PATTERN "*.obj" PATTERN "*.pc2" PATTERN "*.png" PATTERN "*.[ch]pp" PATTERN "CMakeLists.txt")
+# All of the examples: scenes name meshes of several formats, and documents name scripts.
+install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" PATTERN "__pycache__" EXCLUDE)
 
 # The licence of the binary: its terms depend on the libraries that it is linked with.
 set(pliant_licence_of_binary "License: Apache-2.0")
