@@ -10,23 +10,14 @@ install(FILES docs/pliant-scene.xsd DESTINATION "${CMAKE_INSTALL_DATADIR}/pliant
 # All of the examples: scenes name meshes of several formats, and documents name scripts.
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" PATTERN "__pycache__" EXCLUDE)
 
+include(PliantCopyright)
 # The licence of the binary: its terms depend on the libraries that it is linked with.
 set(pliant_licence_of_binary "License: Apache-2.0")
 if(PLIANT_WITH_CHOLMOD)
   file(READ cmake/copyright_with_cholmod.txt pliant_licence_of_binary)
   string(STRIP "${pliant_licence_of_binary}" pliant_licence_of_binary)
 endif()
-foreach(part holders licence text)
-  set(pliant_opensubdiv_${part})
-endforeach()
-if(PLIANT_WITH_OPENSUBDIV)
-  set(pliant_opensubdiv_holders "
-           2013-2022, Pixar Animation Studios (OpenSubdiv)
-           2014-2020, DreamWorks Animation LLC (OpenSubdiv)")
-  set(pliant_opensubdiv_licence " and Apache-2.0-OpenSubdiv")
-  file(READ cmake/copyright_with_opensubdiv.txt pliant_opensubdiv_text)
-endif()
-configure_file(cmake/copyright.in "${PROJECT_BINARY_DIR}/copyright" @ONLY)
+pliant_copyright("${PROJECT_BINARY_DIR}/copyright" "${pliant_licence_of_binary}" "bin/pliant lib/libpliant_*.a")
 
 # Debian requires a compressed changelog. -n omits name and time, so that the file depends on the text
 # alone.
