@@ -39,17 +39,17 @@ def animated():
                 yield block
 
 
-def fcurves_of(animation):
-    """The F-curves of an action, in the slot that the data-block uses where actions have slots."""
+def collections_of(animation):
+    """Where the F-curves of an action are, in the slot that the data-block uses where actions have slots."""
     action, slot = animation.action, getattr(animation, "action_slot", None)
     if slot is None:
-        return list(action.fcurves)
-    curves = []
-    for layer in action.layers:
-        for strip in layer.strips:
-            bag = strip.channelbag(slot)
-            curves += list(bag.fcurves) if bag else []
-    return curves
+        return [action.fcurves]
+    bags = [strip.channelbag(slot) for layer in action.layers for strip in layer.strips]
+    return [bag.fcurves for bag in bags if bag]
+
+
+def fcurves_of(animation):
+    return [fcurve for collection in collections_of(animation) for fcurve in collection]
 
 
 def property_of(block, path):
@@ -89,19 +89,25 @@ def curve_of(block, fcurve):
              "unit": unit if unit in ("LENGTH", "ROTATION") else "NONE", "extrapolation": fcurve.extrapolation}
     if known and known.type in ("BOOLEAN", "ENUM"):
         curve["discrete"] = True
-    others = []
+    curve.update(shape_of(fcurve))
+    return curve
+
+
+def shape_of(fcurve):
+    """All that the curve is but its name and unit."""
+    shape, others = {"extrapolation": fcurve.extrapolation}, []
     for number, modifier in enumerate(fcurve.modifiers):
         if modifier.mute:
             continue
         if modifier.type == "CYCLES" and number == 0:
-            curve["cycles"] = {"before": modifier.mode_before, "before_count": modifier.cycles_before,
+            shape["cycles"] = {"before": modifier.mode_before, "before_count": modifier.cycles_before,
                                "after": modifier.mode_after, "after_count": modifier.cycles_after}
         else:
             others.append(modifier.type)
     if others:
-        curve["modifiers"] = others
-    curve["keys"] = [key_of(point) for point in fcurve.keyframe_points]
-    return curve
+        shape["modifiers"] = others
+    shape["keys"] = [key_of(point) for point in fcurve.keyframe_points]
+    return shape
 
 
 def export_curves(path, names=()):
