@@ -18,7 +18,8 @@ const here = path.dirname(fileURLToPath(import.meta.url));
 const roots = { modules: path.join(here, "node_modules"), files: path.resolve(folder), page: here };
 const types = { ".js": "text/javascript", ".mjs": "text/javascript", ".wasm": "application/wasm" };
 
-const page_html = `<!doctype html><meta charset="utf-8">
+// The icon in the page keeps Chromium from asking for /favicon.ico, which is not here.
+const page_html = `<!doctype html><meta charset="utf-8"><link rel="icon" href="data:,">
 <script type="importmap">{"imports": {"three": "/modules/three/build/three.module.js",
   "three/addons/": "/modules/three/examples/jsm/", "tinyusdz": "/modules/tinyusdz/tinyusdz.js"}}</script>
 <canvas width="640" height="400"></canvas>
@@ -54,7 +55,7 @@ try {
   const complaints = [];
   page.on("pageerror", (error) => complaints.push(String(error)));
   page.on("console", (message) => {
-    if (["error", "warn"].includes(message.type())) complaints.push(message.text());
+    if (["error", "warn"].includes(message.type())) complaints.push(`${message.text()} ${message.location().url ?? ""}`);
   });
   await page.goto(`http://127.0.0.1:${server.address().port}/`);
   await page.waitForFunction(() => window.look !== undefined, undefined, { timeout: 60000 });
