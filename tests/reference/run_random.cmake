@@ -1,7 +1,7 @@
 # Generates random scenes, by KIND_scenes.py, and compares a half of them, 1 or 2. KIND.finds has what the search for them
 # found; if scenes are drawn in another way, compare.py says that they are not well posed any more, and
 # KIND_scenes.py --finds makes the file anew.
-# usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -DHALF=… -P run_random.cmake
+# usage: cmake -DPYTHON=… -DREFERENCE=… -DKIND=… -DPLIANT=… -DWORK=… -DSEED=… -DCOUNT=… -DHALF=… [-DNOISE=--noise] -P run_random.cmake
 file(REMOVE_RECURSE "${WORK}")
 file(MAKE_DIRECTORY "${WORK}")
 execute_process(COMMAND "${PYTHON}" "${REFERENCE}/${KIND}_scenes.py"
@@ -17,5 +17,5 @@ if(HALF EQUAL 1)
 else()
   list(SUBLIST scenes ${middle} -1 scenes)
 endif()
-execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes} --well-posed
+execute_process(COMMAND "${PYTHON}" "${REFERENCE}/compare.py" "${PLIANT}" ${scenes} --well-posed ${NOISE}
   COMMAND_ERROR_IS_FATAL ANY)
