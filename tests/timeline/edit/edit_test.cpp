@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "pliant/timeline/curve_numbers.hpp"
+#include "pliant/timeline/edit/bake_keys.hpp"
+#include "pliant/timeline/edit/simplify.hpp"
 #include "support/catch.hpp"
 #include "support/sanitized.hpp"
 #include "timeline/authoring.hpp"
@@ -564,6 +567,31 @@ TEST_CASE("edits that cannot be are refused with the reason", "[timeline][edit]"
   held.after.count = 2;
   check_error(reverse(make(held), 0), "jumps, and a side that repeats keeps its value");
   CHECK(reverse(make(held), 0).error().index == 2);
+}
+
+TEST_CASE("no edit writes a -0", "[timeline][edit]") {
+  Whim whim(11);
+  const auto check = [](CurveKeys<1> keys) {
+    for_each_number(keys,
+                    [](double number) { REQUIRE_FALSE((number == 0 && std::signbit(number))); });
+    for (const Key<1>& key : keys.keys) REQUIRE_FALSE((key.frame == 0 && std::signbit(key.frame)));
+  };
+  // Steps of whole numbers, as of a hand that rests: many values and slopes are 0.
+  for (int round = 0; round < rounds(1000); ++round) {
+    CurveKeys<1> keys;
+    for (int k = 0; k < 12; ++k) {
+      const auto next = whim.once_in(2) ? Interpolation::Kind::Linear : Interpolation::Kind::Bezier;
+      keys.keys.push_back(key(k - 6, whim.upto(2) - 1, {.kind = next}));
+    }
+    const Curve<1> curve = make(keys);
+    CAPTURE(round);
+    check(simplify(curve, -6, 5, 0.4).value().keys);
+    check(bake_keys(curve, -6, 5, 0.5).value());
+    check(insert_key(curve, whim.between(-6, 5)).value().keys());
+    check(move_keys(curve, 3, {-1}).value().keys());
+    check(reverse(curve, 0).value().keys());
+    check(scale(curve, {0, 1, {0}, {-1}}).value().keys());
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pliant/timeline/compile.hpp"
+#include "pliant/timeline/edit/preserve.hpp"
 #include "pliant/timeline/extrapolated_evaluation.hpp"
 #include "pliant/timeline/loop.hpp"
 #include "pliant/timeline/number_text.hpp"
@@ -57,12 +58,10 @@ std::vector<double> frames_of(double first, double last, double step) {
 template <int D>
 Tangent<D> tangent_of(const Value<D>& slope, const Value<D>& start, const Value<D>& end,
                       double span) {
-  Tangent<D> tangent;
-  tangent.kind = Tangent<D>::Kind::Slope;
-  for (int c = 0; c < D; ++c) {
-    tangent.slope[c] = std::isfinite(slope[c]) ? slope[c] : (end[c] - start[c]) / span;
-  }
-  return tangent;
+  Value<D> finite;
+  for (int c = 0; c < D; ++c)
+    finite[c] = std::isfinite(slope[c]) ? slope[c] : (end[c] - start[c]) / span;
+  return slope_tangent<D>(finite);
 }
 
 }  // namespace

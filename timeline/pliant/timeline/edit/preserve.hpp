@@ -9,12 +9,12 @@
 
 namespace pliant::timeline {
 
-/// A tangent with a written slope [unit/frame].
+/// A tangent with a written slope [unit/frame], 0 in place of -0.
 template <int D>
 Tangent<D> slope_tangent(const Value<D>& slope) {
   Tangent<D> tangent;
   tangent.kind = Tangent<D>::Kind::Slope;
-  tangent.slope = slope;
+  for (int c = 0; c < D; ++c) tangent.slope[c] = slope[c] + 0.0;
   return tangent;
 }
 
