@@ -446,6 +446,15 @@ def _before_load(*_: Any) -> None:
 @persistent
 def _after_load(*_: Any) -> None:
     forget_all()
+    if bpy.app.background:
+        _begin()
+    else:
+        # Blender 3.4 reads the override of the operator that opened the file without Python's lock: no thread of
+        # ours may run before that operator has ended.
+        bpy.app.timers.register(_begin, first_interval=0)
+
+
+def _begin() -> None:
     _guarded(lambda: [(_sync(scene), _check_version(scene), _publish(scene)) for scene in bpy.data.scenes])
 
 
@@ -607,11 +616,7 @@ def register() -> None:
     properties.listeners.append(_heard)
     for name, handler in _handlers.items():
         getattr(bpy.app.handlers, name).append(handler)
-
-    def begin() -> None:  # bpy.data is not there while add-ons are enabled at the start of Blender
-        _after_load()
-
-    bpy.app.timers.register(begin, first_interval=0)
+    bpy.app.timers.register(_begin, first_interval=0)  # bpy.data is not there while Blender starts
 
 
 def unregister() -> None:
@@ -619,8 +624,9 @@ def unregister() -> None:
         handlers = getattr(bpy.app.handlers, name)
         if handler in handlers:
             handlers.remove(handler)
-    if bpy.app.timers.is_registered(_show_news):
-        bpy.app.timers.unregister(_show_news)
+    for timer in (_begin, _show_news):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
     properties.listeners.remove(_heard)
     forget_all()
     if hasattr(bpy.data, "objects"):

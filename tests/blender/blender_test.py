@@ -67,14 +67,9 @@ def main():
             print(text)
             sys.exit("blender_test.py: the package cannot be installed")
         for file, tests in chosen.items():
-            is_windowed = file in WINDOWED
             script = [str(HERE / "inside.py"), "--", str(HERE / f"{file}_test.py"), *tests]
             try:
-                status, text = run(blender("-P", *script, window=is_windowed), environment)
-                if is_windowed and status in (134, 139, -6, -11) and "\nRan " not in text:
-                    # 3.4 reads what an operator's override has without Python's lock, and the tests are a thread.
-                    print(f"{file}: Blender has crashed, and is begun again once:\n{text}")
-                    status, text = run(blender("-P", *script, window=is_windowed), environment)
+                status, text = run(blender("-P", *script, window=file in WINDOWED), environment)
             except subprocess.TimeoutExpired as error:
                 status, text = 1, f"{error}\n{(error.stdout or b'').decode(errors='replace')}"
             print(f"== {file}\n{text}", flush=True)
