@@ -1499,8 +1499,12 @@ test("everything that can be worked has a name and takes the focus", async () =>
       reached.add(await page.evaluate(() => document.activeElement.id));
     }
     for (const id of ["frame-all", "theme", "view", "show-gizmos", "channels", "play", "timeline", "frame", "loop", "speed"]) assert.ok(reached.has(id), id);
+    await page.setViewportSize({ width: 900, height: 260 });
     await page.keyboard.press("?");
-    await page.getByRole("dialog", { name: "Keys" }).waitFor();
+    const keys = page.getByRole("dialog", { name: "Keys" });
+    await keys.waitFor();
+    const { scrollTop, scrollHeight, clientHeight } = await keys.evaluate((each) => ({ scrollTop: each.scrollTop, scrollHeight: each.scrollHeight, clientHeight: each.clientHeight }));
+    assert.ok(scrollTop === 0 && scrollHeight > clientHeight, "it begins at its top");
     await page.keyboard.press("Escape");
     assert.equal(await page.getByRole("dialog").count(), 0);
   });

@@ -157,7 +157,11 @@ button("display-toggle", toggleDisplay);
 button("theme", () => themes.toggle());
 button("frame-all", () => stage.frameAll());
 const help = element<HTMLDialogElement>("help");
-button("help-toggle", () => help.showModal());
+function openHelp(): void {
+  help.showModal();
+  help.scrollTop = 0; // the button that gets the focus is at its end
+}
+button("help-toggle", openHelp);
 
 // Keys
 
@@ -185,7 +189,7 @@ const shortcuts: Record<string, (event: KeyboardEvent) => void> = {
   c: toggleCurves,
   d: toggleDisplay,
   t: () => themes.toggle(),
-  "?": () => help.showModal(),
+  "?": openHelp,
 };
 
 document.addEventListener("keydown", (event) => {
