@@ -221,6 +221,8 @@ TEST_CASE("keys are scaled in the text", "[document]") {
     refused({{}, 0, factor},
             fmt::format("the time factor must be finite and above 0, not {}", factor));
   refused({{}, 0, 1, {}, {}, -1}, "the step must be finite and not below 0, not -1");
+  refused({{}, 0, 2, {}, {}, 1e-320},
+          "poke.forceRadius: the key of frame 12 would come to frame inf, which is not finite");
   refused({{}, 0, 1, {}, {1, 2, 3}},
           "poke.forceRadius: the value factor has 3 numbers; one for all components or 1 are "
           "possible");
@@ -429,6 +431,14 @@ TEST_CASE("colliders are changed as surfaces are", "[document]") {
              contains_text("\"sheet\" has no targets"));
   CHECK_THAT(refusal(hall, {edit::Target{{"scene"}, {}}}),
              contains_text("the scene has no targets"));
+}
+
+TEST_CASE("no object gets the name by which operations call the scene", "[document]") {
+  const std::vector<Operation> all = {edit::Rename{"poke", "scene"},
+                                      edit::Duplicate{"poke", "scene"}, edit::Add{"point", "scene"},
+                                      edit::Group{{"poke", "bulge"}, "scene"}};
+  for (const Operation& one : all)
+    CHECK_THAT(refusal(shot, {one}), Catch::Matchers::EndsWith("choose another name"));
 }
 
 TEST_CASE("forces are grouped and ungrouped", "[document]") {

@@ -29,6 +29,7 @@ Result<void> Editor::operator()(const Group& group) {
     if (!element) return fail(element.error());
     parts_.insert(name);
   }
+  if (auto good = check_new(group.name); !good) return good;
   bool is_there = false;
   for (const auto& [name, element] : all) {
     is_there = is_there || (name == group.name && draft_.name(element) == "group");

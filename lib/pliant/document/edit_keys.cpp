@@ -168,6 +168,10 @@ Result<void> Editor::write_moved(const KeyedCurve<D>& curve, const CurveKeys<D>&
   std::set<double> taken;
   for (const KeyEntry<D>& entry : entries) {
     const double frame = entry.key.frame;
+    if (!std::isfinite(frame))
+      return draft_.refuse(
+          fmt::format("{}: the key of frame {} would come to frame {}, which is not finite",
+                      curve.channel, curve.keys()[*entry.origin].frame, frame));
     const bool is_first = taken.insert(frame).second;
     const bool is_free = !std::ranges::binary_search(others, frame, {}, frame_of);
     if (is_first && (is_free || collision == Collision::Replace)) continue;

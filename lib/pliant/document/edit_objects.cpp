@@ -34,6 +34,7 @@ Result<void> Editor::operator()(const Add& addition) {
   if (std::ranges::find(known, addition.kind) == known.end())
     return draft_.refuse(
         fmt::format("no kind {}{}", in_quotes(addition.kind), xml::hint(addition.kind, known)));
+  if (auto good = check_new(addition.name); !good) return good;
   if (!addition.group.empty() && !is_force(addition.kind))
     return draft_.refuse(fmt::format("a <{}> cannot be in a group", addition.kind));
 
@@ -96,6 +97,7 @@ Result<void> Editor::operator()(const Duplicate& duplication) {
   if (!found) return fail(found.error());
   const ElementIndex original = *found;
   if (original == Draft::root) return draft_.refuse("the scene cannot be duplicated");
+  if (auto good = check_new(duplication.name); !good) return good;
   auto copy = Draft::make(std::string(draft_.whole(original)), draft_.file(), draft_.should_stop());
   if (!copy) return fail(copy.error());
   copy->set(Draft::root, "name", duplication.name);
@@ -156,6 +158,7 @@ Result<void> Editor::operator()(const Rename& rename) {
   const auto found = object(rename.object);
   if (!found) return fail(found.error());
   if (*found == Draft::root) return draft_.refuse("the scene has no name");
+  if (auto good = check_new(rename.name); !good) return good;
   draft_.set(*found, "name", rename.name);
   parts_.insert(rename.object);
   parts_.insert(rename.name);

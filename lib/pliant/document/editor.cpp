@@ -43,6 +43,12 @@ std::vector<Editor::NamedElement> Editor::objects() const {
   return found;
 }
 
+/// Of an object: paths would not reach the scene any more if one had its name.
+Result<void> Editor::check_new(const std::string& name) const {
+  if (name != "scene") return {};
+  return draft_.refuse("\"scene\" is what operations call the scene; choose another name");
+}
+
 Result<ElementIndex> Editor::object(std::string_view name) const {
   if (name.empty()) return Draft::root;
   std::vector<std::string> names;

@@ -83,6 +83,7 @@ class Editor {
   };
   std::vector<Reference> references() const;
   Result<ElementIndex> object(std::string_view name) const;
+  Result<void> check_new(const std::string& name) const;
   bool is_force(std::string_view element) const;
   bool is_force(ElementIndex element) const;
   std::string name_of(ElementIndex element) const;
