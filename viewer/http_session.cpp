@@ -25,7 +25,8 @@ using Code = boost::system::error_code;
 
 constexpr std::size_t piece_bytes = 262'144;  // of an answer, written within one deadline
 constexpr int stream_buffer_bytes = 65'536;   // that the system buffers for a slow client
-constexpr std::size_t most_lingering_bytes = 1'000'000;
+constexpr std::size_t most_lingering_bytes = 100'000'000;
+constexpr std::string_view go_on = "HTTP/1.1 100 Continue\r\n\r\n";
 
 // Fields of every answer: no caching, no guessing of its type, use by pages of this server only, no
 // display in frames, and no referrer, since the address contains the token.
@@ -63,7 +64,8 @@ std::variant<HttpHead, int> parse_head(const std::string& text) {
     head.fields.push_back({std::move(name), std::string(field.value())});
   }
   if (head.find("transfer-encoding") != nullptr) return 501;
-  if (head.find("expect") != nullptr) return 417;
+  const std::string* expectation = head.find("expect");
+  if (expectation != nullptr && !beast::iequals(*expectation, "100-continue")) return 417;
   if (head.find("upgrade") != nullptr) return 400;
   if (const std::string* size = head.find("content-length")) {
     // Beast also accepts a list of equal values.
@@ -259,7 +261,9 @@ void HttpSession::obey() {
   if (bodies >= server_.limits.bodies) return refuse(503);
   is_receiving_ = true;
   stream_.expires_after(server_.limits.body);
-  receive_body();
+  if (head_.find("expect") == nullptr) return receive_body();
+  asio::async_write(stream_, asio::buffer(go_on),
+                    guarded([this](Code error, std::size_t) { error ? close() : receive_body(); }));
 }
 
 void HttpSession::become_known() {

@@ -229,7 +229,7 @@ post(png(64, 48, 9), f"Origin: http://{own}", "Sec-Fetch-Site: same-origin")
         work = """
 length = lambda value, *lines: ask("POST", "picture", f"Content-Length: {value}", *lines, body=b"x" * 1000)
 results["answers"] = [
-    length(10**6), length(2**63), length(2**64 - 1), length("0, 0"), length(-1), length(7, "Expect: 100-continue"),
+    length(10**6), length(2**63), length(2**64 - 1), length("0, 0"), length(-1), length(7, "Expect: 200-ok"),
     ask("POST", "picture", "Content-Length: 7", "Content-Length: 7", body=b"1234567"),
     ask("POST", "picture", "Transfer-Encoding: chunked", body=b"ffffffffffffffff\\r\\n" + b"x" * 1000),
     ask("POST", "picture", "Transfer-Encoding: chunked", "Content-Length: 7", body=b"1234567")]

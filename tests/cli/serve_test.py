@@ -253,7 +253,7 @@ class Forms(Serving):
                 self.refused(400, *(bytes([byte]) for byte in text.encode("latin-1")))
 
     def test_what_asks_for_another_protocol(self):
-        for lines, status in ((("Expect: 100-continue",), 417), (("Expect: 100-continue", "Content-Length: 5"), 417),
+        for lines, status in ((("Expect: 200-ok",), 417), (("Expect: 100-continue, x", "Content-Length: 5"), 417), (("Expect: 100-continue", "Content-Length: 5"), 413),
                               (("Connection: Upgrade", "Upgrade: websocket", "Sec-WebSocket-Version: 13", "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA=="), 400),
                               (("Connection: Upgrade, HTTP2-Settings", "Upgrade: h2c", "HTTP2-Settings: AAMAAABkAAQAAP__"), 400)):
             with self.subTest(lines):

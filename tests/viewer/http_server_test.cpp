@@ -1,6 +1,9 @@
 #include "viewer/http_server.hpp"
 
+#include <algorithm>
+#include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <map>
 #include <mutex>
 #include <new>
@@ -42,13 +45,17 @@ class Client {
     REQUIRE(::send(socket_, text.data(), text.size(), MSG_NOSIGNAL) ==
             static_cast<ssize_t>(text.size()));
   }
-  // Everything that the server sends until it closes the connection; if it does not, ctest's time
-  // limit ends the test.
-  std::string receive() const {
+  // Nothing more comes from us.
+  void end() const { shutdown(socket_, SHUT_WR); }
+  // That many bytes, or everything that the server sends until it closes the connection; if it does
+  // not, ctest's time limit ends the test.
+  std::string receive(std::size_t most = SIZE_MAX) const {
     std::string answer;
     char piece[4096];
-    for (ssize_t got; (got = recv(socket_, piece, sizeof piece, 0)) > 0;)
-      answer.append(piece, static_cast<std::size_t>(got));
+    for (ssize_t got = 1; got > 0 && answer.size() < most;) {
+      got = recv(socket_, piece, std::min(sizeof piece, most - answer.size()), 0);
+      if (got > 0) answer.append(piece, static_cast<std::size_t>(got));
+    }
     return answer;
   }
 
@@ -203,6 +210,47 @@ TEST_CASE("a refusal with a reason keeps the connection", "[viewer][http][thread
     ++count;
   CHECK(count == 3);
   CHECK(answers.find("because") != answers.rfind("because"));
+}
+
+TEST_CASE("a client may ask ahead of its body whether it is wanted", "[viewer][http][threads]") {
+  auto server = HttpServer::listen(0);
+  REQUIRE(server);
+  server->serve({.judge = [](const HttpHead&) { return HttpVerdict{.most_body = 4}; },
+                 .answer = [](const HttpHead&, const std::string& body,
+                              const HttpReply& reply) { reply(text("got " + body)); },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  const auto ask = [&](const std::string& expectation, int size) {
+    Client client(*server);
+    client.send("POST / HTTP/1.1\r\nHost: a\r\nConnection: close\r\nExpect: " + expectation +
+                "\r\nContent-Length: " + std::to_string(size) + "\r\n\r\n");
+    return client;
+  };
+  const Client wanted = ask("100-Continue", 4);
+  const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
+  CHECK(wanted.receive(go_on.size()) == go_on);
+  wanted.send("body");
+  const std::string answer = wanted.receive();
+  CHECK_THAT(answer, StartsWith("HTTP/1.1 200 "));
+  CHECK_THAT(answer, Catch::Matchers::EndsWith("got body"));
+  CHECK_THAT(ask("100-continue", 5).receive(), StartsWith("HTTP/1.1 413 "));
+  CHECK_THAT(ask("200-ok", 4).receive(), StartsWith("HTTP/1.1 417 "));
+  CHECK_THAT(ask("100-continue", 0).receive(), StartsWith("HTTP/1.1 200 "));
+}
+
+TEST_CASE("whoever sends a body that is too large hears so", "[viewer][http][threads]") {
+  HttpLimits limits;
+  limits.linger = std::chrono::minutes(1);
+  auto server = HttpServer::listen(0, limits);
+  REQUIRE(server);
+  server->serve({.judge = &accept_all,
+                 .answer = [](const HttpHead&, const std::string&,
+                              const HttpReply& reply) { reply(text("well")); },
+                 .next_event = [](std::int64_t&) { return nullptr; }});
+  const Client client(*server);
+  const std::string body(20'000'000, 'x');
+  client.send("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 20000000\r\n\r\n" + body);
+  client.end();
+  CHECK_THAT(client.receive(), StartsWith("HTTP/1.1 413 "));
 }
 
 TEST_CASE("a request that nobody will answer is answered by 503", "[viewer][http][threads]") {
