@@ -454,8 +454,11 @@ HttpAnswer EditServer::State::export_scene(const Body& body) {
   order.scene_frames = {scene.start, scene.end};
   const auto place = session->place_of(file);
   if (!place) return refusal(place.error());
+  if (auto free = session->check_export(*place); !free) return refusal(free.error());
   order.file = place->string();
   order.text = session->scene_document().text();
+  order.name = session->scene_document().file();
+  order.root = session->root();
   order.folder = session->folder_of_file();
   std::error_code unknown;
   if (session->is_saved())

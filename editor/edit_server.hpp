@@ -27,9 +27,10 @@ class Exporter {
   Exporter& operator=(const Exporter&) = delete;
   virtual ~Exporter() = default;
 
-  /// What to write, as the request says it; `text` and `folder`: the scene.
+  /// What to write, as the request says it; `text`, `name` in messages, and `folder`: the scene.
   struct Order {
-    std::string text, folder;
+    std::string text, name, folder;
+    std::string root;   ///< as of `load_scene`
     std::string saved;  ///< the file with this text; empty: it is not saved
     std::string file;   ///< where it goes
     std::optional<FrameSpan> frames = {};

@@ -50,6 +50,12 @@ std::string is_there(const std::string& file) {
   return fmt::format("{} is there already", printable(file));
 }
 
+Result<void> would_overwrite(const fs::path& file, const fs::path& input) {
+  return fail(ErrorCode::InvalidInput,
+              fmt::format("{}: would overwrite {}, an input of the scene; choose another name",
+                          printable(file.string()), printable(input.string())));
+}
+
 std::string no_take(std::int64_t id) { return fmt::format("there is no take {}", id); }
 
 Json reached_by(const Suggestion& suggestion) {
@@ -320,6 +326,20 @@ Result<fs::path> EditSession::place_of_scene(const std::string& file) const {
   return place;
 }
 
+Result<void> EditSession::check_export(const fs::path& place) const {
+  const InputFinder inputs(document_->scene(), options_.simulation.should_stop);
+  const auto input = inputs.find(place);
+  return input ? would_overwrite(place, *input) : Result<void>();
+}
+
+// A scene gets a file of its own: other names of an input stay what they are.
+Result<void> EditSession::check_save(const fs::path& place) const {
+  std::error_code unknown;
+  for (const auto& [input, stamp] : others_)
+    if (fs::weakly_canonical(input, unknown) == place) return would_overwrite(place, input);
+  return {};
+}
+
 HttpAnswer EditSession::save(const Body& body) {
   Members members(body);
   const std::string file = members.text("file");
@@ -340,6 +360,7 @@ HttpAnswer EditSession::save(const Body& body) {
   } else if (!overwrites && fs::exists(*place, unknown)) {
     return refusal(409, is_there(name));
   }
+  if (auto free = check_save(*place); !free) return refusal(free.error());
   const bool writes_plainly = is_own && !overwrites && fs::exists(*place, unknown);
   const auto saved = writes_plainly ? document_->save() : document_->save_as(name);
   if (!saved) return refusal(saved.error());
@@ -516,6 +537,7 @@ HttpAnswer EditSession::save_take(const Take& take, const std::string& file, boo
   if (!place) return refusal(place.error());
   std::error_code unknown;
   if (!overwrites && fs::exists(*place, unknown)) return refusal(409, is_there(place->string()));
+  if (auto free = check_save(*place); !free) return refusal(free.error());
   auto written = check_scene_place(take.text, document_->file(), document_->folder(),
                                    place->string(), options_.simulation.should_stop);
   if (written) written = write_file(place->string(), take.text);

@@ -103,6 +103,8 @@ class EditSession {
   const Ghosts& ghosts() const { return ghosts_; }
   Revision revision() const { return revision_; }
   bool has_scene() const { return document_.has_value(); }
+  /// Errors: InvalidInput: the scene is made from that file, under this name or another.
+  Result<void> check_export(const std::filesystem::path& place) const;
   const SceneDocument& scene_document() const { return *document_; }
   const std::string& root() const { return options_.root; }
   const SimulationOptions& simulation() const { return options_.simulation; }
@@ -131,6 +133,7 @@ class EditSession {
   bool is_new(const std::filesystem::path& file, FileStamp now, FileStamp& known);
   Result<std::filesystem::path> own_place() const;
   Result<std::filesystem::path> place_of_scene(const std::string& file) const;
+  Result<void> check_save(const std::filesystem::path& place) const;
   FileStamp own_stamp() const;
   void read_others_again();
   void write_journal();

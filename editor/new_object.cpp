@@ -131,6 +131,9 @@ class NewObjects {
   // Where the surface is at which the object is to stand.
   Result<void> find_place() {
     const auto found = std::ranges::find(scene_.surfaces, wanted_.surface, &Surface::name);
+    if (!wanted_.surface.empty() && found == scene_.surfaces.end())
+      return fail(ErrorCode::InvalidInput,
+                  fmt::format("no surface is named {}", printable(wanted_.surface)));
     if (scene_.surfaces.empty()) return {};
     index_ = found == scene_.surfaces.end()
                  ? 0

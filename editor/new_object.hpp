@@ -25,7 +25,7 @@ struct Addition {
 
 /// The operations that add an object where it is seen at once: at the middle of the surface, with
 /// radii that fit it, and with the magnitude that moves it by a tenth of its size if that can be
-/// found. Errors: InvalidInput: no such kind, or a mesh without a file; those of
+/// found. Errors: InvalidInput: no such kind or surface, or a mesh without a file; those of
 /// `Simulation::make`.
 Result<Addition> to_add(const SceneDocument& document, const NewObject& wanted,
                         const SimulationOptions& options);

@@ -59,7 +59,8 @@ Result<editor::Beginning> begin_scene(const std::string& starter, const std::str
 }
 
 Result<std::string> with_material(const SceneDocument& document, const std::string& surface,
-                                  const std::string& material) {
+                                  const std::string& material, const std::string& root,
+                                  const ResourceOptions& resources) {
   const auto all = looks();
   const auto look = std::ranges::find(all, material, &Look::name);
   if (look == all.end())
@@ -70,8 +71,9 @@ Result<std::string> with_material(const SceneDocument& document, const std::stri
   if (found == surfaces.end())
     return fail(ErrorCode::InvalidInput, fmt::format("no surface is named {}", printable(surface)));
   StarterSource source{.name = document.file(),
-                       .folder = fs::path(document.file()).parent_path().string(),
-                       .options = simulation_options({})};
+                       .folder = document.folder(),
+                       .root = root,
+                       .options = simulation_options(resources)};
   source.surface = static_cast<std::size_t>(found - surfaces.begin());
   const auto facts = look_and_play(document.text(), source);
   if (!facts) return fail(facts.error());
@@ -118,7 +120,11 @@ Result<editor::SessionOptions> session_options(const EditOptions& options) {
   session.tools.starters = &starters_json;
   session.tools.picture = &picture_of;
   session.tools.begin = &begin_scene;
-  session.tools.material = &with_material;
+  session.tools.material = [root = session.root, resources = options.resources](
+                               const SceneDocument& document, const std::string& surface,
+                               const std::string& material) {
+    return with_material(document, surface, material, root, resources);
+  };
   return session;
 }
 

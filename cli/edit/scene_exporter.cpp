@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <charconv>
+#include <iterator>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -60,6 +61,7 @@ std::vector<std::string> words_for(const Exporter::Order& order, const ResourceO
     add({"--frames", fmt::format("{}:{}", order.frames->first, order.frames->last)});
   if (!order.surface.empty() && !is_movie && !is_recorded) add({"--surface", order.surface});
   if (!order.space.empty() && !is_movie && !is_recorded) add({"--space", order.space});
+  add({"--root", order.root});
   if (resources.threads > 0) add({"--threads", std::to_string(resources.threads)});
   if (resources.max_memory > 0) add({"--max-memory", fmt::format("{}", resources.max_memory)});
   return words;
@@ -76,6 +78,35 @@ bool read_progress(std::string_view line, ExportState& state) {
   state.done = done;
   state.total = total;
   return true;
+}
+
+// The errors among the messages of a command, "FILE:LINE: error: MESSAGE"; `name`: of the scene
+// that it has as its standard input.
+Error error_of(const std::vector<std::string>& messages, const std::string& name) {
+  constexpr std::string_view sign = "error: ", input = "standard input";
+  std::vector<Error> errors;
+  for (std::string line : messages) {
+    for (std::size_t at = 0; (at = line.find(input, at)) != std::string::npos; at += name.size())
+      line.replace(at, input.size(), name);
+    const std::size_t at = line.find(sign);
+    if (at == std::string::npos || (at > 0 && !line.substr(0, at).ends_with(": "))) continue;
+    Error error{.message = line.substr(at + sign.size())};
+    std::string_view place = std::string_view(line).substr(0, at > 0 ? at - 2 : 0);
+    const std::size_t colon = place.rfind(':');
+    if (colon != std::string_view::npos) {
+      std::from_chars(place.data() + colon + 1, place.data() + place.size(), error.line);
+      if (error.line > 0) place = place.substr(0, colon);
+    }
+    if (place != "pliant") error.file = place;
+    errors.push_back(std::move(error));
+  }
+  if (errors.empty())
+    return {.message = messages.empty() ? "the program that exports has ended without a word"
+                                        : fmt::format("{}", fmt::join(messages, "; "))};
+  Error first = std::move(errors.front());
+  first.others.assign(std::make_move_iterator(errors.begin() + 1),
+                      std::make_move_iterator(errors.end()));
+  return first;
 }
 
 class SceneExporter final : public Exporter {
@@ -121,7 +152,7 @@ class SceneExporter final : public Exporter {
     ExportState state{.file = order.file, .state = "running"};
     if (order.frames) state.total = order.frames->count();
     order.tell(state);
-    std::string messages;
+    std::vector<std::string> messages;
     ProgramRun program;
     program.patience = std::chrono::hours(24 * 365);
     program.ends_gently = true;
@@ -132,8 +163,8 @@ class SceneExporter final : public Exporter {
     program.take_line = [](std::string_view) {};
     program.take_message = [&](std::string_view line) {
       if (read_progress(line, state)) return order.tell(state);
-      constexpr std::size_t most = 10'000;
-      if (messages.size() < most) messages += (messages.empty() ? "" : "\n") + std::string(line);
+      constexpr std::size_t most = 100;
+      if (messages.size() < most) messages.emplace_back(line);
     };
     program.should_stop = [this] { return is_stopped_.load(); };
     const auto ended = run_program(words_for(order, resources_), program);
@@ -141,7 +172,7 @@ class SceneExporter final : public Exporter {
       state.state = "stopped";
     } else if (!ended || ended->code != 0) {
       state.state = "failed";
-      state.error = ended ? Error{.message = messages} : ended.error();
+      state.error = ended ? error_of(messages, order.name) : ended.error();
     } else {
       state.state = "done";
       state.done = state.total;

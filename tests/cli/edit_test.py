@@ -257,6 +257,7 @@ class Requests(Editing):
         self.assertEqual(status("POST", "undo", "{}"), 415)
         self.assertEqual(status("POST", "undo", "{}", {"Content-Type": "text/plain"}), 415)
         self.assertEqual(status("POST", "undo", b"", {**json_type, "Content-Length": "16000001"}), 413)
+        self.assertEqual(status("POST", "undo", b" " * 16000001, json_type), 413)
         for body in ("", "[]", "{", '{"operations":[]', '{"operations":[],"operations":[]}', '{"operations":' + 300 * "["):
             self.assertEqual(status("POST", "operations", body, json_type), 400, body)
         for route, body in (("operations", {"operations": [], "else": 1}), ("operations", {"operations": [], "name": 1}),
@@ -663,6 +664,45 @@ class Files(Editing):
         self.assertIn(b'"2000"', self.read("other.xml"))
         self.assertIn(b'"3000"', self.read("scene.xml"))
         self.assertEqual(editor.document["file"], "other.xml")
+
+    def test_what_the_scene_reads_is_not_overwritten(self):
+        fragment = '<fragment><point name="far" center="1 0 0" deformationRadius="4" forceRadius="2"/></fragment>'
+        self.write("part.xml", fragment)
+        editor = self.begin(SCENE.replace("</scene>", '<include file="part.xml"/></scene>'))
+        editor.done("keep")
+        os.link(self.path("scene.xml"), self.path("hard.npy"))
+        os.symlink("part.xml", self.path("link.xml"))
+        for file in ("part.xml", "./part.xml", "link.xml"):
+            self.refused(422, editor.post("save", {"file": file, "overwrite": True}), "part.xml", "input")
+            self.refused(422, editor.post("take", {"id": 1, "file": file, "overwrite": True}), "part.xml", "input")
+        for file in ("part.xml", "scene.xml", "hard.npy"):
+            self.refused(422, editor.post("export", {"file": file}), "input")
+        self.assertEqual(self.read("part.xml").decode(), fragment)
+        os.rename(self.path("scene.xml"), self.path("scene.npy"))
+        self.assertEqual(editor.end(signal.SIGKILL)[0], -signal.SIGKILL)
+        self.refused(422, self.edit("scene.npy").post("export", {"file": "scene.npy"}), "input")
+
+    def test_nothing_is_read_outside(self):
+        os.mkdir(self.path("away"))
+        os.mkdir(self.path("in"))
+        self.write("away/secret.obj", "v secretword 1 2\n")
+        self.write("in/mesh.obj", "v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nf 1 2 3 4\n")
+        self.write("in/scene.xml", '<scene version="1" start="1" end="4"><surface name="s"><mesh file="mesh.obj"/></surface>'
+                   '<point name="p" center="0 0 0" deformationRadius="4" forceRadius="2"/></scene>')
+        editor = self.edit("in/scene.xml")
+        editor.done("export", file="a.npy")
+        self.assertEqual(editor.wait_for("export", lambda data: data["state"] != "running")["state"], "done")
+        os.remove(self.path("in/mesh.obj"))
+        os.symlink("../away/secret.obj", self.path("in/mesh.obj"))
+        for file in ("b.npy", "b.replay"):
+            editor.done("export", file=file)
+            failed = editor.wait_for("export", lambda data: data["state"] != "running" and data["file"] == file)
+            self.assertEqual(failed["state"], "failed")
+            self.assertIn("outside", failed["errors"][0]["message"])
+        for answer in (editor.post("material", {"surface": "s", "material": "rubber"}), editor.post("add", {"kind": "point"})):
+            self.refused(422, answer, "outside")
+            self.assertNotIn("secretword", str(answer))
+        self.assertEqual(sorted(os.listdir(self.path("in"))), ["a.npy", "mesh.obj", "scene.xml"])
 
     def test_pipes_and_devices_are_no_files(self):
         os.mkfifo(self.path("pipe.xml"))
@@ -1113,6 +1153,7 @@ class Tools(Editing):
         self.run_pliant("validate", "scene.xml")
         self.refused(422, editor.post("add", {"kind": "nothing"}), "nothing")
         self.refused(422, editor.post("add", {"kind": "mesh"}), "file")
+        self.refused(422, editor.post("add", {"kind": "point", "surface": "none"}), "none")
 
     def asked(self, editor, route, **body):
         """A request whose answer is not waited for, and whether it is there."""
@@ -1540,6 +1581,19 @@ class Exports(Editing):
         failed = self.finished(editor, "a.xyz")
         self.assertEqual(failed["state"], "failed")
         self.assertIn("xyz", failed["errors"][0]["message"])
+
+    def test_each_error_of_an_export_has_its_place(self):
+        part = '<fragment><point name="far" center="1 0 0" deformationRadius="4" forceRadius="2" magnitude="{}" falloff="{}"/></fragment>'
+        self.write("part.xml", part.format(5, "smooth"))
+        editor = self.begin(SCENE.replace("</scene>", '<include file="part.xml"/></scene>'))
+        self.write("part.xml", "\n" + part.format("x", "steep"))
+        editor.until(lambda document: document["revision"] == 2)
+        told = editor.frame(8)[1]["errors"]
+        editor.done("export", file="a.npy")
+        errors = self.finished(editor, "a.npy")["errors"]
+        self.assertEqual([(each["message"], os.path.basename(each["file"]), each["line"]) for each in errors],
+                         [(each["message"], os.path.basename(each["file"]), each["line"]) for each in told])
+        self.assertEqual([each["line"] for each in errors], [2, 2])
 
     def test_a_stopped_export_leaves_nothing(self):
         editor = self.begin(SCENE.replace('columns="13" rows="11"', 'columns="201" rows="201"'), end=3000)
