@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 
 using namespace pliant;
+using Catch::Matchers::WithinRel;
 
 namespace {
 

@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 using namespace pliant;
+using Catch::Matchers::WithinAbs;
 
 TEST_CASE("a number is rounded to 4 digits, of its own or of a smaller range",
           "[feedback][suggest]") {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "pliant/core/text.hpp"
 #include "pliant/document/draft.hpp"
 #include "pliant/scene/read.hpp"
 #include "pliant/scene/text/markup.hpp"

@@ -23,6 +23,7 @@
 #include "pliant/sampling/sampling.hpp"
 #include "pliant/sampling/targets.hpp"
 #include "pliant/scene/channels.hpp"
+#include "pliant/scene/format/surface_description.hpp"
 
 namespace pliant {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "pliant/files/read_file.hpp"
 #include "support/caches.hpp"
 #include "support/catch.hpp"

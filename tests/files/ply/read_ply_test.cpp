@@ -144,9 +144,9 @@ TEST_CASE("numbered (u,v) and normals go before all others", "[mesh][read_ply]")
   CHECK(bad.corner_uvs == std::vector{-1, 0, -1, -1, -1, -1});
   CHECK(bad.corner_normals == std::vector{0, 1, 2, 3, 4, 5});
   CHECK_THAT(bad.left_out,
-             Contains("2 numbers of texture coordinates that are out of range") &&
-                 Contains("1 list of texture coordinates that does not suit its face") &&
-                 Contains("1 list of normals that does not suit its face"));
+             contains_text("2 numbers of texture coordinates that are out of range") &&
+                 contains_text("1 list of texture coordinates that does not suit its face") &&
+                 contains_text("1 list of normals that does not suit its face"));
   const Mesh both = read("3 0 1 2 3 1 0 1 3 4 4 2" + unread + "3 0 2 3 0 0" + unread, "4 0 1 2 3\n",
                          "element tristrips 1\nproperty list uchar int vertex_indices\n");
   CHECK(both.corner_uvs.size() == 12);

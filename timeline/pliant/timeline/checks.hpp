@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "pliant/core/result.hpp"
 #include "pliant/timeline/curve_report.hpp"
 #include "pliant/timeline/key.hpp"
 

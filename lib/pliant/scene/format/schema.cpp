@@ -10,6 +10,7 @@
 
 #include "pliant/scene/format/format.hpp"
 #include "pliant/scene/format/schema_types.hpp"
+#include "pliant/scene/text/tree.hpp"
 
 namespace pliant {
 
