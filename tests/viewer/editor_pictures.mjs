@@ -90,21 +90,25 @@ async function perform(page, name, offsets, before = () => {}) {
 
 const button = (page, name) => page.getByRole("button", { name, exact: true });
 
-/** A shot of ten seconds of the starter `sheet`: the finger is led and pressed by two passes of the hand. */
+/** A shot of the starter `sheet`: the finger is led over it and pressed by two passes of the hand, at a quarter of the speed. */
 async function shoot(page, { during = () => {}, after = () => {} } = {}) {
   await begin(page, "sheet");
   await page.evaluate(() => window.pliant.edit.editor.selection.set([])); // the scene
-  await page.getByRole("spinbutton", { name: "end", exact: true }).fill("240");
+  await page.getByRole("spinbutton", { name: "end", exact: true }).fill("120");
   await page.keyboard.press("Enter");
+  await select(page, "sheet");
+  await page.getByRole("combobox", { name: "release", exact: true }).selectOption("recover"); // what the finger leaves
   await select(page, "finger");
   await goTo(page, 1);
   await button(page, "Record").click();
-  const circle = Array.from({ length: 90 }, (_, k) => [130 * Math.sin(k / 12) * Math.min(1, k / 15), 45 * (1 - Math.cos(k / 12))]);
-  await perform(page, "Move finger", circle, () => during(1));
+  await page.getByRole("combobox", { name: "Recording speed" }).selectOption("0.25");
+  const hand = Array.from({ length: 185 }, (_, k) => k / 26);
+  await page.keyboard.down("Alt"); // over the surface
+  await perform(page, "Move finger", hand.map((time) => [70 * Math.sin(time) * Math.min(1, time), 22 * (1 - Math.cos(time))]), () => during(1));
+  await page.keyboard.up("Alt");
   await after(1);
   await goTo(page, 1);
-  const press = Array.from({ length: 90 }, (_, k) => [0, 40 + 35 * Math.sin(k / 4)]);
-  await perform(page, "Magnitude of finger", press, () => during(2));
+  await perform(page, "Magnitude of finger", hand.map((time) => [0, -60 * (1 - Math.cos(2.5 * time))]), () => during(2));
   await after(2);
   await button(page, "Record").click();
 }
