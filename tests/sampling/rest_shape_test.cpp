@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "support/catch.hpp"
+#include "support/scenes.hpp"
 #include "support/scratch_folder.hpp"
 
 using namespace pliant;

@@ -1,3 +1,4 @@
+#include "pliant/forces/force.hpp"
 #include "support/caches.hpp"
 #include "support/catch.hpp"
 #include "support/meshes.hpp"

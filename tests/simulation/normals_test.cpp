@@ -3,6 +3,7 @@
 #include <numeric>
 #include <vector>
 
+#include "pliant/forces/force.hpp"
 #include "pliant/mesh/node_faces.hpp"
 #include "support/area_vectors.hpp"
 #include "support/catch.hpp"

@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 
 #include "pliant/core/thread_pool.hpp"
+#include "pliant/plate/exact/pade.hpp"
 #include "pliant/plate/sparse/factored_matrix.hpp"
 #include "pliant/plate/sparse/sparse_factor.hpp"
+#include "pliant/plate/sparse/supernodal_numbers.hpp"
 #include "pliant/plate/sparse/supernode_pattern.hpp"
 #include "support/catch.hpp"
 #include "support/plates.hpp"
